@@ -1,0 +1,17 @@
+# What `cmake --install` puts where, with pkg-config and a CMake package.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS jali_static jali_shared EXPORT jali-targets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(TARGET jali)
+  install(TARGETS jali RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(DIRECTORY include/jali DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT jali-targets NAMESPACE jali:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jali)
+configure_package_config_file(cmake/jali-config.cmake.in ${PROJECT_BINARY_DIR}/jali-config.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jali)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/jali-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/jali-config.cmake ${PROJECT_BINARY_DIR}/jali-config-version.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jali)
+configure_file(cmake/jali.pc.in ${PROJECT_BINARY_DIR}/jali.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/jali.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,107 @@
+// The thread pool: workers sleep on a condition, a run hands out indices by an atomic counter.
+#include "base/pool.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+
+struct pool {
+    pthread_mutex_t lock;
+    pthread_cond_t wake, finished;
+    pthread_t *thread;   // [started]
+    int32_t started;
+    int32_t busy;        // workers that have not yet finished this run
+    uint64_t run;        // counts runs, so that a worker knows a new one
+    bool closing;
+    void (*work)(void *shared, int32_t index);
+    void *shared;
+    int32_t count;
+    atomic_int next;
+};
+
+static void drain(pool *p)
+{
+    int32_t index;
+    while ((index = atomic_fetch_add(&p->next, 1)) < p->count) p->work(p->shared, index);
+}
+
+static void *worker(void *argument)
+{
+    pool *p = argument;
+    uint64_t seen = 0;
+    pthread_mutex_lock(&p->lock);
+    for (;;) {
+        while (p->run == seen && !p->closing) pthread_cond_wait(&p->wake, &p->lock);
+        if (p->closing) break;
+        seen = p->run;
+        pthread_mutex_unlock(&p->lock);
+        drain(p);
+        pthread_mutex_lock(&p->lock);
+        if (--p->busy == 0) pthread_cond_signal(&p->finished);
+    }
+    pthread_mutex_unlock(&p->lock);
+    return NULL;
+}
+
+// Workers take no signals: an interrupt must reach the thread that installed its handler.
+static void start_workers(pool *p, int32_t wanted)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    while (p->started < wanted && pthread_create(&p->thread[p->started], NULL, worker, p) == 0) p->started++;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+void pool_run(pool *p, int32_t count, void (*work)(void *shared, int32_t index), void *shared)
+{
+    if (p->started == 0 || count <= 1) {
+        for (int32_t i = 0; i < count; i++) work(shared, i);
+        return;
+    }
+    pthread_mutex_lock(&p->lock);
+    p->work = work;
+    p->shared = shared;
+    p->count = count;
+    atomic_store(&p->next, 0);
+    p->busy = p->started;
+    p->run++;
+    pthread_cond_broadcast(&p->wake);
+    pthread_mutex_unlock(&p->lock);
+    drain(p);
+    pthread_mutex_lock(&p->lock);
+    while (p->busy > 0) pthread_cond_wait(&p->finished, &p->lock);
+    pthread_mutex_unlock(&p->lock);
+}
+
+jali_status pool_create(jali_context *ctx, int32_t threads, pool **out)
+{
+    jali_status status;
+    pool *p = NULL;
+    TRY(ALLOCATE_CLEARED(ctx, p, 1));
+    TRY(ALLOCATE_CLEARED(ctx, p->thread, threads));
+    pthread_mutex_init(&p->lock, NULL);
+    pthread_cond_init(&p->wake, NULL);
+    pthread_cond_init(&p->finished, NULL);
+    start_workers(p, threads - 1);
+    *out = p;
+    return JALI_OK;
+done:
+    release(ctx, p);
+    return status;
+}
+
+void pool_free(jali_context *ctx, pool *p)
+{
+    if (!p) return;
+    pthread_mutex_lock(&p->lock);
+    p->closing = true;
+    pthread_cond_broadcast(&p->wake);
+    pthread_mutex_unlock(&p->lock);
+    for (int32_t i = 0; i < p->started; i++) pthread_join(p->thread[i], NULL);
+    pthread_mutex_destroy(&p->lock);
+    pthread_cond_destroy(&p->wake);
+    pthread_cond_destroy(&p->finished);
+    release(ctx, p->thread);
+    release(ctx, p);
+}

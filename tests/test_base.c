@@ -1,0 +1,74 @@
+// The context: limits, cancelling, the arena, the pool.
+#include "testing.h"
+
+TEST(arena_gives_back_what_a_stage_took)
+{
+    arena_mark mark = arena_here(ctx);
+    int32_t *a, *b;
+    CHECK_OK(ARENA(ctx, a, 1000));
+    CHECK_OK(ARENA(ctx, b, 10000000));
+    CHECK(a != b && (uintptr_t)a % 64 == 0 && (uintptr_t)b % 64 == 0);
+    arena_rewind(ctx, mark);
+    CHECK(arena_here(ctx).chunk == mark.chunk);
+}
+
+static void square(void *shared, int32_t index)
+{
+    ((int32_t *)shared)[index] = index * index;
+}
+
+TEST(pool_calls_each_index_once)
+{
+    int32_t result[500];
+    for (int32_t round = 0; round < 50; round++) {
+        memset(result, 0, sizeof result);
+        parallel(ctx, 500, square, result);
+        for (int32_t i = 0; i < 500; i++) CHECK_INT(result[i], i * i);
+    }
+}
+
+TEST(memory_limit_is_a_sentence)
+{
+    jali_context_options opt = jali_context_defaults();
+    opt.max_memory_bytes = 1 << 20;
+    jali_context *small;
+    CHECK_INT(jali_context_create(&opt, &small), JALI_OK);
+    jali_bitmap big;
+    CHECK_STATUS(jali_bitmap_create(small, 100000, 100000, &big), JALI_LIMIT);
+    CHECK(strstr(jali_message(small), "limit of 1 MB") != NULL);
+    CHECK(big.word == NULL);
+    jali_context_free(small);
+}
+
+TEST(cancel_and_timeout_stop_the_next_step)
+{
+    CHECK_OK(step(ctx, "test", 0));
+    jali_cancel(ctx);
+    CHECK(stopping(ctx));
+    CHECK_STATUS(step(ctx, "test", 0.5), JALI_CANCELLED);
+    jali_context_options opt = jali_context_defaults();
+    opt.timeout_seconds = 1e-9;
+    jali_context *late;
+    CHECK_INT(jali_context_create(&opt, &late), JALI_OK);
+    CHECK_STATUS(step(late, "test", 0), JALI_LIMIT);
+    jali_context_free(late);
+}
+
+TEST(bad_context_options_are_refused)
+{
+    jali_context *none;
+    CHECK_INT(jali_context_create(&(jali_context_options){.threads = -1}, &none), JALI_BAD_VALUE);
+    CHECK(none == NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(arena_gives_back_what_a_stage_took, open_context, close_context),
+        cmocka_unit_test_setup_teardown(pool_calls_each_index_once, open_context, close_context),
+        cmocka_unit_test_setup_teardown(memory_limit_is_a_sentence, open_context, close_context),
+        cmocka_unit_test_setup_teardown(cancel_and_timeout_stop_the_next_step, open_context, close_context),
+        cmocka_unit_test_setup_teardown(bad_context_options_are_refused, open_context, close_context),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
