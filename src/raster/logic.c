@@ -1,0 +1,105 @@
+// Logic and counting on whole bitmaps, in bands of rows.
+#include "raster/raster.h"
+#include "base/base.h"
+
+enum { BAND_WORDS = 1 << 15 }; // 256 KiB of each operand: fits the second-level cache
+
+typedef struct logic_job {
+    bitmap_rule rule;
+    const uint64_t *a, *b;
+    uint64_t *dst;
+    int64_t words;
+    int64_t *count;
+} logic_job;
+
+VECTORISED static void combine_words(bitmap_rule rule, const uint64_t *a, const uint64_t *b, uint64_t *dst, int64_t n)
+{
+    switch (rule) {
+    case RULE_AND: for (int64_t i = 0; i < n; i++) dst[i] = a[i] & b[i]; break;
+    case RULE_OR: for (int64_t i = 0; i < n; i++) dst[i] = a[i] | b[i]; break;
+    case RULE_XOR: for (int64_t i = 0; i < n; i++) dst[i] = a[i] ^ b[i]; break;
+    case RULE_AND_NOT: for (int64_t i = 0; i < n; i++) dst[i] = a[i] & ~b[i]; break;
+    case RULE_OR_NOT: for (int64_t i = 0; i < n; i++) dst[i] = a[i] | ~b[i]; break;
+    }
+}
+
+VECTORISED static int64_t count_words(bitmap_rule rule, const uint64_t *a, const uint64_t *b, int64_t n)
+{
+    int64_t total = 0;
+    switch (rule) {
+    case RULE_AND: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] & b[i]); break;
+    case RULE_OR: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] | b[i]); break;
+    case RULE_XOR: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] ^ b[i]); break;
+    case RULE_AND_NOT: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] & ~b[i]); break;
+    case RULE_OR_NOT: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] | ~b[i]); break;
+    }
+    return total;
+}
+
+static int64_t word_count(const jali_bitmap *a)
+{
+    return a->stride * a->height_px;
+}
+
+static int32_t band_count(int64_t words)
+{
+    return (int32_t)((words + BAND_WORDS - 1) / BAND_WORDS);
+}
+
+static void combine_band(void *shared, int32_t band)
+{
+    const logic_job *job = shared;
+    int64_t from = (int64_t)band * BAND_WORDS;
+    combine_words(job->rule, job->a + from, job->b + from, job->dst + from, MIN(BAND_WORDS, job->words - from));
+}
+
+void combine(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b, jali_bitmap *dst)
+{
+    logic_job job = {rule, a->word, b->word, dst->word, word_count(a), NULL};
+    parallel(ctx, band_count(job.words), combine_band, &job);
+}
+
+// Bits beyond the width stay 0 whatever is written into them.
+static void clear_padding(jali_bitmap *a)
+{
+    int64_t whole = a->width_px / 64;
+    uint64_t rest = (UINT64_C(1) << a->width_px % 64) - 1;
+    for (int32_t y = 0; y < a->height_px; y++) {
+        uint64_t *row = a->word + y * a->stride;
+        for (int64_t i = whole; i < a->stride; i++) row[i] &= i == whole ? rest : 0;
+    }
+}
+
+void invert(jali_context *ctx, const jali_bitmap *a, jali_bitmap *dst)
+{
+    (void)ctx;
+    for (int64_t i = 0; i < word_count(a); i++) dst->word[i] = ~a->word[i];
+    clear_padding(dst);
+}
+
+void fill(jali_context *ctx, jali_bitmap *dst, bool white)
+{
+    (void)ctx;
+    if (!word_count(dst)) return;
+    memset(dst->word, white ? 0xff : 0, (size_t)word_count(dst) * sizeof *dst->word);
+    if (white) clear_padding(dst);
+}
+
+int64_t count_combined(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b)
+{
+    (void)ctx;
+    return count_words(rule, a->word, b->word, word_count(a));
+}
+
+int64_t count_white(jali_context *ctx, const jali_bitmap *a)
+{
+    return count_combined(ctx, RULE_AND, a, a);
+}
+
+bool any_white(jali_context *ctx, const jali_bitmap *a)
+{
+    (void)ctx;
+    for (int64_t i = 0; i < word_count(a); i++)
+        if (a->word[i]) return true;
+    return false;
+}

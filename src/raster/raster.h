@@ -1,0 +1,77 @@
+// Bit-packed pictures and everything on them. Internal.
+//
+// Every operator works on 64-pixel words in row bands over the context's threads and gives the same result for
+// any number of threads. Pixels beyond the bitmap count as `outside`.
+#ifndef RASTER_RASTER_H
+#define RASTER_RASTER_H
+
+#include <jali/bitmap.h>
+
+// --- Whole bitmaps (logic.c). Bitmaps of one call have one size; dst may be one of the operands.
+
+typedef enum bitmap_rule { RULE_AND, RULE_OR, RULE_XOR, RULE_AND_NOT, RULE_OR_NOT } bitmap_rule;
+
+/// dst = a rule b.
+void combine(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b, jali_bitmap *dst);
+void invert(jali_context *ctx, const jali_bitmap *a, jali_bitmap *dst);
+void fill(jali_context *ctx, jali_bitmap *dst, bool white);
+int64_t count_white(jali_context *ctx, const jali_bitmap *a);
+/// Number of white pixels of (a rule b), without making it.
+int64_t count_combined(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b);
+bool any_white(jali_context *ctx, const jali_bitmap *a);
+
+// --- Morphology (morphology.c)
+
+/// A structuring element that is convex and symmetric about its centre, row by row from the middle outwards:
+/// at distance i from the middle row it reaches half[i] pixels to each side. Odd sizes have their centre on a
+/// pixel, even ones on a pixel's upper left corner, so that every whole size exists.
+typedef struct element {
+    int32_t size;      // rows and columns it spans
+    int32_t rows;      // (size + 1) / 2 entries of half
+    int32_t *half;     // [rows], not increasing; odd: reach beyond the centre; even: columns on each side
+} element;
+
+/// A square of `size` px, size >= 1.
+jali_status element_square(jali_context *ctx, int32_t size, element *e);
+/// All pixels whose centre lies within diameter_px / 2 of the centre; its size is the whole number nearest
+/// to diameter_px (at least 1), so that a bar `size` px wide just holds it.
+jali_status element_disc(jali_context *ctx, double diameter_px, element *e);
+/// The octagon between: square of `size` px with corners cut at 45 degrees.
+jali_status element_octagon(jali_context *ctx, int32_t size, element *e);
+void element_free(jali_context *ctx, element *e);
+
+/// dst = the pixels where the element fits into src.   fails  JALI_NO_MEMORY
+jali_status erode(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside, jali_bitmap *dst);
+/// dst = the union of the elements centred on src (the reflected erosion of the complement).
+jali_status dilate(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside, jali_bitmap *dst);
+/// Opening: what the element can paint without leaving src. Closing: the opening of the complement. Elements
+/// centred beyond the bitmap do not paint: a picture whose surroundings matter carries a margin of the
+/// element's size. dst may be src. `scratch` has src's size.
+jali_status open_by(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside,
+                    jali_bitmap *scratch, jali_bitmap *dst);
+jali_status close_by(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside,
+                     jali_bitmap *scratch, jali_bitmap *dst);
+
+// --- Components (components.c)
+
+/// Maximal horizontal runs of one tone, labelled by connected component.
+typedef struct components {
+    int32_t width_px, height_px;
+    int32_t run_count, count;   // count: number of components, labels 0 .. count-1 by first pixel in raster order
+    int32_t *first;             // [height_px + 1], row y owns runs first[y] .. first[y+1]-1
+    int32_t (*span)[2];         // [run_count], columns x0 .. x1-1
+    int32_t *label;             // [run_count]
+} components;
+
+/// Label the components of one tone with 4- or 8-connectivity.
+jali_status label_components(jali_context *ctx, const jali_bitmap *a, bool white, int32_t connectivity,
+                             components *out);
+void components_free(jali_context *ctx, components *c);
+/// The run that holds (x, y), or -1.
+int32_t run_at(const components *c, int32_t x, int32_t y);
+/// area[label] = pixels.
+jali_status component_areas(jali_context *ctx, const components *c, int64_t **area);
+/// Set the run's pixels in dst.
+void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white);
+
+#endif

@@ -1,0 +1,213 @@
+// Bitmaps and everything on them, against the definitions.
+#include "testing.h"
+#include "raster/raster.h"
+
+static bool pixel(const jali_bitmap *a, int32_t x, int32_t y, bool outside)
+{
+    return x < 0 || y < 0 || x >= a->width_px || y >= a->height_px ? outside : jali_bitmap_get(a, x, y);
+}
+
+// Whether (dx, dy) is in the element, in half pixels.
+static bool in_element(const element *e, int32_t dx, int32_t dy)
+{
+    int32_t even = e->size % 2 == 0;
+    int32_t v = abs(2 * dy + even) / 2, u = abs(2 * dx + even);
+    return v < e->rows && u <= 2 * e->half[v] - even;
+}
+
+static bool eroded_pixel(const jali_bitmap *a, const element *e, int32_t x, int32_t y, bool outside)
+{
+    for (int32_t dy = -e->size; dy <= e->size; dy++)
+        for (int32_t dx = -e->size; dx <= e->size; dx++)
+            if (in_element(e, dx, dy) && !pixel(a, x + dx, y + dy, outside)) return false;
+    return true;
+}
+
+static bool dilated_pixel(const jali_bitmap *a, const element *e, int32_t x, int32_t y, bool outside)
+{
+    for (int32_t dy = -e->size; dy <= e->size; dy++)
+        for (int32_t dx = -e->size; dx <= e->size; dx++)
+            if (in_element(e, dx, dy) && pixel(a, x - dx, y - dy, outside)) return true;
+    return false;
+}
+
+static void check_morphology(const jali_bitmap *a, const element *e, bool outside)
+{
+    jali_bitmap got, scratch;
+    CHECK_OK(jali_bitmap_create(ctx, a->width_px, a->height_px, &got));
+    CHECK_OK(jali_bitmap_create(ctx, a->width_px, a->height_px, &scratch));
+    CHECK_OK(erode(ctx, a, e, outside, &got));
+    for (int32_t y = 0; y < a->height_px; y++)
+        for (int32_t x = 0; x < a->width_px; x++)
+            CHECK(jali_bitmap_get(&got, x, y) == eroded_pixel(a, e, x, y, outside));
+    CHECK_OK(dilate(ctx, a, e, outside, &got));
+    for (int32_t y = 0; y < a->height_px; y++)
+        for (int32_t x = 0; x < a->width_px; x++)
+            CHECK(jali_bitmap_get(&got, x, y) == dilated_pixel(a, e, x, y, outside));
+    CHECK_OK(open_by(ctx, a, e, outside, &scratch, &got));
+    CHECK_INT(count_combined(ctx, RULE_AND_NOT, &got, a), 0);
+    jali_bitmap again;
+    CHECK_OK(jali_bitmap_copy(ctx, &got, &again));
+    CHECK_OK(open_by(ctx, &again, e, outside, &scratch, &again));
+    CHECK(same_bitmap(&got, &again)); // idempotent
+    CHECK_OK(close_by(ctx, a, e, outside, &scratch, &again));
+    CHECK_INT(count_combined(ctx, RULE_AND_NOT, a, &again), 0);
+    jali_bitmap_free(ctx, &again);
+    jali_bitmap_free(ctx, &got);
+    jali_bitmap_free(ctx, &scratch);
+}
+
+TEST(morphology_is_its_definition)
+{
+    uint64_t seed = 11;
+    for (int32_t size = 1; size <= 12; size++) {
+        element e[3];
+        CHECK_OK(element_square(ctx, size, &e[0]));
+        CHECK_OK(element_disc(ctx, size, &e[1]));
+        CHECK_OK(element_octagon(ctx, size, &e[2]));
+        for (int32_t kind = 0; kind < 3; kind++)
+            for (int32_t outside = 0; outside < 2; outside++) {
+                int32_t width[] = {20, 63, 64, 65, 130};
+                jali_bitmap a = random_bitmap(&seed, width[(size + kind + outside) % 5], 17, 50 + 40 * outside);
+                check_morphology(&a, &e[kind], outside);
+                jali_bitmap_free(ctx, &a);
+            }
+        for (int32_t kind = 0; kind < 3; kind++) element_free(ctx, &e[kind]);
+    }
+}
+
+TEST(wide_elements_cross_words)
+{
+    uint64_t seed = 5;
+    for (int32_t size = 60; size <= 200; size += 35) {
+        element e;
+        CHECK_OK(element_disc(ctx, size, &e));
+        jali_bitmap a, eroded;
+        CHECK_OK(jali_bitmap_create(ctx, 600, 300, &a));
+        fill(ctx, &a, true);
+        for (int32_t i = 0; i < 3; i++)
+            jali_bitmap_set(&a, (int32_t)(next_random(&seed) % 600), (int32_t)(next_random(&seed) % 300), false);
+        CHECK_OK(jali_bitmap_create(ctx, 600, 300, &eroded));
+        CHECK_OK(erode(ctx, &a, &e, true, &eroded));
+        for (int32_t y = 0; y < 300; y += 7)
+            for (int32_t x = 0; x < 600; x += 3) {
+                bool hit = false;
+                for (int32_t v = 0; v < 300; v++)
+                    for (int32_t u = 0; u < 600; u++)
+                        if (!hit && !jali_bitmap_get(&a, u, v) && in_element(&e, u - x, v - y)) hit = true;
+                CHECK(jali_bitmap_get(&eroded, x, y) == !hit);
+            }
+        jali_bitmap_free(ctx, &a);
+        jali_bitmap_free(ctx, &eroded);
+        element_free(ctx, &e);
+    }
+}
+
+TEST(a_bar_as_wide_as_the_disc_survives_and_a_thinner_one_does_not)
+{
+    for (int32_t size = 2; size <= 15; size++) {
+        element e;
+        CHECK_OK(element_disc(ctx, size, &e));
+        for (int32_t width = size - 1; width <= size; width++) {
+            jali_bitmap a, scratch;
+            CHECK_OK(jali_bitmap_create(ctx, 90, 90, &a));
+            CHECK_OK(jali_bitmap_create(ctx, 90, 90, &scratch));
+            for (int32_t y = 0; y < 90; y++) paint_run(&a, y, 40, 40 + width, true);
+            int64_t before = count_white(ctx, &a);
+            CHECK_OK(open_by(ctx, &a, &e, true, &scratch, &a));
+            CHECK_INT(count_white(ctx, &a), width == size ? before : 0);
+            jali_bitmap_free(ctx, &a);
+            jali_bitmap_free(ctx, &scratch);
+        }
+        element_free(ctx, &e);
+    }
+}
+
+// Flood fill by repeated sweeps: slow, plain, right.
+static int32_t flood_labels(const jali_bitmap *a, bool white, int32_t connectivity, int32_t *label)
+{
+    int32_t w = a->width_px, h = a->height_px, count = 0;
+    for (int32_t i = 0; i < w * h; i++) label[i] = -1;
+    for (int32_t start = 0; start < w * h; start++) {
+        if (label[start] >= 0 || jali_bitmap_get(a, start % w, start / w) != white) continue;
+        label[start] = count;
+        for (bool grown = true; grown;) {
+            grown = false;
+            for (int32_t y = 0; y < h; y++)
+                for (int32_t x = 0; x < w; x++) {
+                    if (label[y * w + x] >= 0 || jali_bitmap_get(a, x, y) != white) continue;
+                    for (int32_t dy = -1; dy <= 1; dy++)
+                        for (int32_t dx = -1; dx <= 1; dx++) {
+                            if (connectivity == 4 && dx && dy) continue;
+                            int32_t u = x + dx, v = y + dy;
+                            if (u < 0 || v < 0 || u >= w || v >= h || label[v * w + u] != count) continue;
+                            label[y * w + x] = count;
+                            grown = true;
+                        }
+                }
+        }
+        count++;
+    }
+    return count;
+}
+
+TEST(components_are_those_of_a_flood_fill)
+{
+    uint64_t seed = 3;
+    int32_t label[100 * 40];
+    for (int32_t round = 0; round < 40; round++) {
+        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 99, h = 1 + (int32_t)(next_random(&seed) >> 40) % 39;
+        jali_bitmap a = random_bitmap(&seed, w, h, 20 + round * 3 / 2);
+        for (int32_t variant = 0; variant < 4; variant++) {
+            bool white = variant % 2;
+            int32_t connectivity = variant / 2 ? 8 : 4;
+            components c;
+            CHECK_OK(label_components(ctx, &a, white, connectivity, &c));
+            CHECK_INT(c.count, flood_labels(&a, white, connectivity, label));
+            for (int32_t y = 0; y < h; y++)
+                for (int32_t x = 0; x < w; x++) {
+                    int32_t run = run_at(&c, x, y);
+                    CHECK_INT(run < 0 ? -1 : c.label[run], label[y * w + x]);
+                }
+            components_free(ctx, &c);
+        }
+        jali_bitmap_free(ctx, &a);
+    }
+}
+
+static jali_status open_and_label(jali_context *limited, void *data)
+{
+    jali_status status;
+    jali_bitmap scratch = {0};
+    element e = {0};
+    components c = {0};
+    TRY(element_disc(limited, 5, &e));
+    TRY(jali_bitmap_copy(limited, data, &scratch));
+    TRY(open_by(limited, data, &e, true, &scratch, &scratch));
+    TRY(label_components(limited, data, true, 4, &c));
+done:
+    components_free(limited, &c);
+    element_free(limited, &e);
+    jali_bitmap_free(limited, &scratch);
+    return status;
+}
+
+TEST(every_refused_allocation_is_reported)
+{
+    uint64_t seed = 9;
+    jali_bitmap a = random_bitmap(&seed, 70, 30, 50);
+    refuse_each_allocation(open_and_label, &a);
+    jali_bitmap_free(ctx, &a);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(morphology_is_its_definition),
+        cmocka_unit_test(wide_elements_cross_words),
+        cmocka_unit_test(a_bar_as_wide_as_the_disc_survives_and_a_thinner_one_does_not),
+        cmocka_unit_test(components_are_those_of_a_flood_fill),
+        cmocka_unit_test(every_refused_allocation_is_reported),
+    };
+    return cmocka_run_group_tests(tests, open_context, close_context);
+}
