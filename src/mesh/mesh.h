@@ -1,0 +1,23 @@
+// Meshes as values, and what the mesh tools share.
+#ifndef MESH_MESH_H
+#define MESH_MESH_H
+
+#include "base/base.h"
+#include <jali/mesh.h>
+
+/// Allocate both arrays, not cleared.
+jali_status mesh_create(jali_context *ctx, int32_t vertex_count, int32_t triangle_count, jali_mesh *mesh);
+
+/// Refuse a mesh that no tool can work on: an index outside the vertices, a coordinate that is not finite.
+///   fails  JALI_BAD_INPUT
+jali_status mesh_validate(jali_context *ctx, const jali_mesh *mesh);
+
+/// Vertices at exactly the same place: first[i] is the lowest index whose coordinates equal those of i
+/// (0 and -0 are equal).
+///   out    first     [count], may be used at once as a renumbering
+///          distinct  how many places there are; may be NULL
+///   cost   O(count) expected, the same for any order of threads: there is one
+jali_status weld_points(jali_context *ctx, int32_t count, const double (*point)[3], int32_t *first,
+                        int32_t *distinct);
+
+#endif
