@@ -140,7 +140,7 @@ static void least_within_reach(const form *q, double place[2])
     double det = q->xx * q->yy - q->xy * q->xy, least = INFINITY;
     if (det > 1e-9) {
         double x = (q->xy * q->y - q->yy * q->x) / det, y = (q->xy * q->x - q->xx * q->y) / det;
-        if (fabs(x) <= 0.5 && fabs(y) <= REACH_PX) {
+        if (fabs(x) <= REACH_PX && fabs(y) <= REACH_PX) {
             place[0] = x, place[1] = y;
             return;
         }
