@@ -1,18 +1,13 @@
 // Read a picture: which type is it, decode it to grey, lay it right.
 //
-// Limits:  2^29 pixels (20,000 x 20,000 fits), 65,500 px a side, files up to 4 GiB. A header that promises
+// Limits:  2^29 pixels (20,000 x 20,000 fits), 65,500 px a side, files up to 1.6 GB. A header that promises
 //          more pixels than its file can hold is refused before anything is allocated.
 // Checked: tests/test_read.c: every depth and type, every prefix of small files; fuzz/fuzz_png.c and its kin.
 #include "read/read.h"
-
-#include <errno.h>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include "base/file.h"
 
 static const uint64_t max_total_px = UINT64_C(1) << 29;
-static const uint64_t max_file_bytes = UINT64_C(1) << 32;
-enum { SNIFF_BYTES = 64 };
+static const size_t max_file_bytes = (size_t)3 << 29;
 
 #define ACCEPTED "accepted are PNG, JPEG, WebP, PBM, PGM and PPM"
 
@@ -98,7 +93,6 @@ static const picture_type *type_of(const uint8_t *bytes, size_t size)
     return NULL;
 }
 
-// Before the whole of a stream is read, its first bytes must look like a picture.
 static jali_status check_type(jali_context *ctx, const uint8_t *bytes, size_t size, const char *name)
 {
     if (size == 0) return fail(ctx, JALI_BAD_INPUT, "%s: the file is empty", name);
@@ -139,61 +133,14 @@ done:
     return status;
 }
 
-// Everything up to the end of the file, which may be a pipe of unknown length.
-static jali_status read_all(jali_context *ctx, int file, const char *name, uint8_t **bytes, size_t *size)
-{
-    jali_status status;
-    struct stat about;
-    size_t capacity = 0;
-    *bytes = NULL;
-    *size = 0;
-    bool sized = fstat(file, &about) == 0 && S_ISREG(about.st_mode);
-    if (sized && (uint64_t)about.st_size > max_file_bytes)
-        return fail(ctx, JALI_BAD_INPUT, "%s: the file has %.1f GB; at most %.1f GB are accepted", name,
-                    (double)about.st_size / 1e9, (double)max_file_bytes / 1e9);
-    for (;;) {
-        size_t room = *size == 0 ? (sized ? (size_t)about.st_size + 1 : 1 << 16) : *size + 1;
-        TRY(GROW(ctx, *bytes, capacity, room));
-        ssize_t got = read(file, *bytes + *size, capacity - *size);
-        if (got < 0 && errno == EINTR) {
-            TRY(step(ctx, "read", 0));
-            continue;
-        }
-        if (got < 0) {
-            status = fail(ctx, JALI_IO, "%s: cannot be read: %s", name, strerror(errno));
-            goto done;
-        }
-        if (got == 0) break;
-        *size += (size_t)got;
-        if (*size >= SNIFF_BYTES) TRY(check_type(ctx, *bytes, *size, name));
-        if (*size > max_file_bytes) {
-            status = fail(ctx, JALI_BAD_INPUT, "%s: more than %.1f GB came; that is too much", name,
-                          (double)max_file_bytes / 1e9);
-            goto done;
-        }
-        TRY(step(ctx, "read", 0));
-    }
-    return JALI_OK;
-done:
-    release(ctx, *bytes);
-    *bytes = NULL;
-    return status;
-}
-
 jali_status jali_read(jali_context *ctx, const char *path, const jali_read_options *opt, jali_picture *picture)
 {
     jali_status status;
-    uint8_t *bytes = NULL;
-    size_t size;
-    bool standard = strcmp(path, "-") == 0;
-    const char *name = standard ? "standard input" : path;
+    jali_bytes file = {0};
     *picture = (jali_picture){0};
-    int file = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
-    if (file < 0) return fail(ctx, JALI_IO, "%s: cannot be opened: %s", name, strerror(errno));
-    TRY(read_all(ctx, file, name, &bytes, &size));
-    TRY(jali_read_bytes(ctx, bytes, size, name, opt, picture));
+    TRY(file_read(ctx, path, max_file_bytes, &file));
+    TRY(jali_read_bytes(ctx, file.data, file.size, strcmp(path, "-") == 0 ? "stdin" : path, opt, picture));
 done:
-    if (!standard) close(file);
-    release(ctx, bytes);
+    jali_bytes_free(ctx, &file);
     return status;
 }

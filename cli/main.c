@@ -1,0 +1,85 @@
+// jali: pictures carved through surfaces. One verb a job; `jali --help` lists them.
+//
+// Data go to stdout, words to stderr. The exit codes are in cli.h.
+#include "options.h"
+#include "outputs.h"
+
+#include <stdio.h>
+
+static const verb verbs[] = {
+    {"place", "PICTURE", "put a picture on the printer's working grid, nothing else changed",
+     GROUP_PICTURE | GROUP_SIZE | GROUP_FILES | GROUP_RUN, ".png", run_place},
+    {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | GROUP_FILES | GROUP_RUN, ".png", run_sample},
+    {"list", "KIND", "list what is built in: samples", GROUP_RUN, "", run_list},
+};
+
+enum { VERB_COUNT = sizeof verbs / sizeof *verbs };
+
+const verb *verb_list(int32_t *count)
+{
+    *count = VERB_COUNT;
+    return verbs;
+}
+
+static int print_help(void)
+{
+    printf("jali carves a black and white picture through a plate, ready to print.\n\n");
+    for (int32_t i = 0; i < VERB_COUNT; i++) {
+        char head[64];
+        snprintf(head, sizeof head, "jali %s %s", verbs[i].name, verbs[i].operand ? verbs[i].operand : "");
+        printf("  %-26s %s\n", head, verbs[i].what);
+    }
+    printf("\n\"jali VERB --help\" lists the options of a verb. Pictures are PNG, JPEG, WebP, PBM, PGM, PPM"
+#ifdef JALI_HAVE_RSVG
+           ", SVG"
+#endif
+           ";\n- is stdin or stdout. Exit: 0 done, 1 failed, 2 usage, 3 a promise is not kept, 4 input\n"
+           "rejected, 5 a limit was reached, 130 interrupted.\n");
+    return EXIT_DONE;
+}
+
+static int print_verb_help(const verb *v)
+{
+    printf("jali %s%s%s%s%s: %s\n\n", v->name, v->operand ? " " : "", v->operand ? v->operand : "",
+           *v->suffixes ? " -o NAME" : "", v->suffixes, v->what);
+    print_options(v);
+    return EXIT_DONE;
+}
+
+static int refuse(const char *sentence)
+{
+    fprintf(stderr, "jali: %s\n", sentence);
+    return EXIT_USAGE;
+}
+
+static int unknown_verb(const char *typed)
+{
+    const char *names[VERB_COUNT];
+    char sentence[SENTENCE_BYTES];
+    for (int32_t i = 0; i < VERB_COUNT; i++) names[i] = verbs[i].name;
+    const char *near = nearest_name(typed, names, VERB_COUNT);
+    snprintf(sentence, sizeof sentence, near ? "there is no \"jali %.40s\"; did you mean \"jali %s\"?"
+                                             : "there is no \"jali %.40s\"; \"jali --help\" lists what there is",
+             typed, near);
+    return refuse(sentence);
+}
+
+int main(int argc, char **argv)
+{
+    char sentence[SENTENCE_BYTES];
+    settings set = default_settings();
+    if (argc < 2) return refuse("what shall be done? \"jali --help\" lists what there is");
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) return print_help();
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        printf("jali %s\n", jali_version());
+        return EXIT_DONE;
+    }
+    for (int32_t i = 0; i < VERB_COUNT; i++) {
+        if (strcmp(argv[1], verbs[i].name) != 0) continue;
+        if (!parse_options(&verbs[i], argc - 2, argv + 2, &set, sentence)) return refuse(sentence);
+        if (set.help) return print_verb_help(&verbs[i]);
+        if (!check_outputs(&verbs[i], &set, sentence)) return refuse(sentence);
+        return (int)run_verb(&verbs[i], &set);
+    }
+    return unknown_verb(argv[1]);
+}

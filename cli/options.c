@@ -1,0 +1,307 @@
+// A table of options and what reads it: `--name value`, `--name=value`, `-o value`, flags.
+//
+// Numbers are finite, inside the range of their option, and may carry its unit (12mm). The table's `offset` says
+// which field of the settings an option fills.
+#include "options.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef enum value_kind { FLAG, NUMBER, WHOLE, TEXT, OUTPUT, THRESHOLD, CROP, ROTATE, PROGRESS } value_kind;
+
+typedef struct option {
+    const char *name, *value; // value: its name in the help; NULL = a flag
+    value_kind kind;
+    option_group group;
+    size_t offset;
+    double least, most;
+    const char *unit;         // may follow the number
+    const char *help;
+} option;
+
+#define FIELD(field) offsetof(settings, field)
+
+static const option options[] = {
+    {"output", "FILE", OUTPUT, GROUP_FILES, 0, 0, 0, 0, "write this file (also -o; several may be given; - is stdout)"},
+    {"force-overwrite", NULL, FLAG, GROUP_FILES, FIELD(force_overwrite), 0, 0, 0, "replace output files that exist"},
+    {"json", "FILE", TEXT, GROUP_JSON, FIELD(json), 0, 0, 0, "write the figures as JSON (- is stdout)"},
+    {"report", "FILE", TEXT, GROUP_REPORT, FIELD(report), 0, 0, 0, "write a report as one HTML file"},
+
+    {"threshold", "0..255|auto|local", THRESHOLD, GROUP_PICTURE, 0, 0, 255, 0,
+     "grey level from which a pixel is white; local follows uneven light (auto)"},
+    {"window", "PX", WHOLE, GROUP_PICTURE, FIELD(threshold.window_px), 3, 4001, "px",
+     "side of the neighbourhood of --threshold local (1/16 of the shorter side)"},
+    {"contrast", "SHARE", NUMBER, GROUP_PICTURE, FIELD(threshold.contrast), 0, 1, 0,
+     "of --threshold local: more counts only stronger edges (0.2)"},
+    {"invert", NULL, FLAG, GROUP_PICTURE, FIELD(read.invert), 0, 0, 0, "swap black and white"},
+    {"mirror", NULL, FLAG, GROUP_PICTURE, FIELD(read.mirror), 0, 0, 0, "swap left and right"},
+    {"rotate", "0|90|180|270", ROTATE, GROUP_PICTURE, 0, 0, 270, 0, "turn clockwise (0)"},
+    {"crop", "L,T,W,H", CROP, GROUP_PICTURE, 0, 0, 0, 0, "keep this part, in pixels from the upper left corner"},
+
+    {"width", "MM", NUMBER, GROUP_SIZE, FIELD(place.width_mm), 0.01, 10000, "mm", "width of the picture (70)"},
+    {"height", "MM", NUMBER, GROUP_SIZE, FIELD(place.height_mm), 0.01, 10000, "mm",
+     "height of the picture; one size gives the other"},
+    {"frame", "MM", NUMBER, GROUP_SIZE, FIELD(place.frame_mm), 0, 1000, "mm", "width of the solid frame (0)"},
+    {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_e_mm), 0, 100, "mm",
+     "how much wider a solid bar prints than drawn (0.1)"},
+    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_s_mm), 0.001, 100, "mm", "narrowest solid that prints (0.3)"},
+    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_v_mm), 0.001, 100, "mm", "narrowest void that prints (0.5)"},
+    {"pixel", "MM", NUMBER, GROUP_SIZE, FIELD(place.pixel_mm), 0.0001, 100, "mm",
+     "working pixel (the smaller of phi-s and phi-v, over 8)"},
+    {"paper", NULL, FLAG, GROUP_SIZE, FIELD(place.paper), 0, 0, 0, "the paper's grid: one working pixel an input pixel"},
+
+    {"size", "PX", WHOLE, GROUP_SAMPLE, FIELD(size_px), 16, 32768, "px", "side of the picture (1000)"},
+    {"skip-intersections", NULL, FLAG, GROUP_CHECK, FIELD(skip_intersections), 0, 0, 0,
+     "leave out the one costly test"},
+
+    {"threads", "N", WHOLE, GROUP_RUN, FIELD(context.threads), 1, 1024, 0, "threads to use; never changes a result (all)"},
+    {"max-memory", "MB", NUMBER, GROUP_RUN, FIELD(max_memory_mb), 1, 1e9, "MB", "give up rather than hold more"},
+    {"timeout", "S", NUMBER, GROUP_RUN, FIELD(context.timeout_seconds), 0.001, 1e9, "s", "give up after this long"},
+    {"progress", "auto|plain|none", PROGRESS, GROUP_RUN, 0, 0, 0, 0,
+     "show it on a terminal, as lines, or not at all (auto)"},
+    {"quiet", NULL, FLAG, GROUP_RUN, FIELD(quiet), 0, 0, 0, "say nothing but errors (also -q)"},
+    {"help", NULL, FLAG, GROUP_RUN, FIELD(help), 0, 0, 0, "these lines (also -h)"},
+};
+
+enum { OPTION_COUNT = sizeof options / sizeof *options };
+
+settings default_settings(void)
+{
+    settings set = {
+        .read = jali_read_defaults(),
+        .threshold = jali_threshold_defaults(),
+        .place = jali_place_defaults(),
+        .context = jali_context_defaults(),
+        .size_px = 1000,
+    };
+    set.place.width_mm = 0; // 70 stands unless a height is given
+    return set;
+}
+
+static bool wrong(char sentence[SENTENCE_BYTES], const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(sentence, SENTENCE_BYTES, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+// Edits (insert, drop, change, each 1) from one word to another.
+static int32_t edits_between(const char *a, const char *b)
+{
+    enum { LONGEST = 40 };
+    int32_t row[LONGEST + 1], a_length = (int32_t)strlen(a), b_length = (int32_t)strlen(b);
+    if (a_length > LONGEST || b_length > LONGEST) return LONGEST;
+    for (int32_t j = 0; j <= b_length; j++) row[j] = j;
+    for (int32_t i = 1; i <= a_length; i++) {
+        int32_t diagonal = row[0];
+        row[0] = i;
+        for (int32_t j = 1; j <= b_length; j++) {
+            int32_t above = row[j], changed = diagonal + (a[i - 1] != b[j - 1]);
+            row[j] = MIN(changed, MIN(above, row[j - 1]) + 1);
+            diagonal = above;
+        }
+    }
+    return row[b_length];
+}
+
+const char *nearest_name(const char *typed, const char *const *name, int32_t count)
+{
+    const char *best = NULL;
+    int32_t fewest = (int32_t)strlen(typed) / 3 + 2;
+    for (int32_t i = 0; i < count; i++) {
+        int32_t edits = edits_between(typed, name[i]);
+        if (edits < fewest) {
+            fewest = edits;
+            best = name[i];
+        }
+    }
+    return best;
+}
+
+static const option *find_option(const char *name, size_t length)
+{
+    for (int32_t i = 0; i < OPTION_COUNT; i++)
+        if (strlen(options[i].name) == length && strncmp(options[i].name, name, length) == 0) return &options[i];
+    return NULL;
+}
+
+static bool unknown_option(const verb *v, const char *name, size_t length, char *sentence)
+{
+    const char *names[OPTION_COUNT];
+    char typed[64];
+    int32_t count = 0;
+    for (int32_t i = 0; i < OPTION_COUNT; i++)
+        if (options[i].group & v->groups) names[count++] = options[i].name;
+    snprintf(typed, sizeof typed, "%.*s", (int)MIN(length, sizeof typed - 1), name);
+    const char *near = nearest_name(typed, names, count);
+    if (near) return wrong(sentence, "there is no option --%s; did you mean --%s?", typed, near);
+    return wrong(sentence, "there is no option --%s; \"jali %s --help\" lists those there are", typed, v->name);
+}
+
+static bool parse_number(const option *o, const char *text, double *number, char *sentence)
+{
+    char *end;
+    *number = strtod(text, &end);
+    if (end == text || !isfinite(*number))
+        return wrong(sentence, "--%s takes a number, not \"%.40s\"", o->name, text);
+    if (o->unit && strcmp(end, o->unit) == 0) end += strlen(end);
+    if (*end != 0 && o->unit)
+        return wrong(sentence, "--%s takes a number in %s, not \"%.40s\"", o->name, o->unit, text);
+    if (*end != 0) return wrong(sentence, "--%s takes a number, not \"%.40s\"", o->name, text);
+    if (*number < o->least || *number > o->most)
+        return wrong(sentence, "--%s must be %g .. %g%s%s, not %.40s", o->name, o->least, o->most, o->unit ? " " : "",
+                     o->unit ? o->unit : "", text);
+    if (o->kind != NUMBER && *number != floor(*number))
+        return wrong(sentence, "--%s takes a whole number, not %.40s", o->name, text);
+    return true;
+}
+
+static bool parse_threshold(const option *o, const char *text, settings *set, char *sentence)
+{
+    double level = 0;
+    if (strcmp(text, "auto") == 0)
+        set->threshold.method = JALI_THRESHOLD_AUTO;
+    else if (strcmp(text, "local") == 0)
+        set->threshold.method = JALI_THRESHOLD_LOCAL;
+    else {
+        if (!parse_number(o, text, &level, sentence)) return false;
+        set->threshold.method = JALI_THRESHOLD_FIXED;
+        set->threshold.level = (int32_t)level;
+    }
+    return true;
+}
+
+static bool parse_crop(const char *text, settings *set, char *sentence)
+{
+    const char *at = text;
+    for (int32_t i = 0; i < 4; i++) {
+        char *end;
+        errno = 0;
+        long number = strtol(at, &end, 10);
+        bool last = i == 3;
+        if (end == at || errno || number < (i >= 2) || number > 1 << 20 || *end != (last ? 0 : ','))
+            return wrong(sentence, "--crop takes left,top,width,height in pixels, not \"%.60s\"", text);
+        set->read.crop_px[i] = (int32_t)number;
+        at = end + 1;
+    }
+    return true;
+}
+
+static bool parse_rotate(const option *o, const char *text, settings *set, char *sentence)
+{
+    double degrees;
+    if (!parse_number(o, text, &degrees, sentence)) return false;
+    if ((int32_t)degrees % 90 != 0) return wrong(sentence, "--rotate takes 0, 90, 180 or 270, not %.40s", text);
+    set->read.quarter_turns = (int32_t)degrees / 90;
+    return true;
+}
+
+static bool parse_progress(const char *text, settings *set, char *sentence)
+{
+    static const char *const names[] = {"auto", "plain", "none"};
+    for (int32_t i = 0; i < 3; i++)
+        if (strcmp(text, names[i]) == 0) {
+            set->progress = i;
+            return true;
+        }
+    return wrong(sentence, "--progress takes auto, plain or none, not \"%.40s\"", text);
+}
+
+static bool add_output(const char *text, settings *set, char *sentence)
+{
+    if (set->output_count == MOST_OUTPUTS) return wrong(sentence, "at most %d output files can be given", MOST_OUTPUTS);
+    set->output[set->output_count++] = text;
+    return true;
+}
+
+static bool set_option(const option *o, const char *text, settings *set, char *sentence)
+{
+    void *field = (char *)set + o->offset;
+    double number = 0;
+    if (text && *text == 0) return wrong(sentence, "--%s needs a value (%s)", o->name, o->value);
+    switch (o->kind) {
+    case FLAG: *(bool *)field = true; return true;
+    case TEXT: *(const char **)field = text; return true;
+    case OUTPUT: return add_output(text, set, sentence);
+    case THRESHOLD: return parse_threshold(o, text, set, sentence);
+    case CROP: return parse_crop(text, set, sentence);
+    case ROTATE: return parse_rotate(o, text, set, sentence);
+    case PROGRESS: return parse_progress(text, set, sentence);
+    case NUMBER:
+        if (!parse_number(o, text, &number, sentence)) return false;
+        *(double *)field = number;
+        return true;
+    default:
+        if (!parse_number(o, text, &number, sentence)) return false;
+        *(int32_t *)field = (int32_t)number;
+        return true;
+    }
+}
+
+// One option at argv[*i]; leaves *i on its last argument.
+static bool parse_one(const verb *v, int argc, char **argv, int *i, settings *set, char *sentence)
+{
+    const char *word = argv[*i] + 2, *text = NULL;
+    if (argv[*i][1] != '-') { // the few short ones
+        if (argv[*i][1] == 0 || argv[*i][2] != 0)
+            return wrong(sentence, "there is no option %.40s", argv[*i]);
+        word = argv[*i][1] == 'o' ? "output" : argv[*i][1] == 'q' ? "quiet" : argv[*i][1] == 'h' ? "help" : argv[*i] + 1;
+    }
+    const char *equals = strchr(word, '=');
+    size_t length = equals ? (size_t)(equals - word) : strlen(word);
+    const option *o = find_option(word, length);
+    if (!o) return unknown_option(v, word, length, sentence);
+    if (!(o->group & v->groups)) return wrong(sentence, "--%s is not an option of jali %s", o->name, v->name);
+    if (o->kind == FLAG && equals) return wrong(sentence, "--%s takes no value", o->name);
+    if (o->kind != FLAG) {
+        if (!equals && *i + 1 >= argc) return wrong(sentence, "--%s needs a value (%s)", o->name, o->value);
+        text = equals ? equals + 1 : argv[++*i];
+    }
+    return set_option(o, text, set, sentence);
+}
+
+static bool set_operand(const verb *v, const char *text, settings *set, char *sentence)
+{
+    if (!v->operand) return wrong(sentence, "jali %s takes no \"%.60s\"", v->name, text);
+    if (set->operand)
+        return wrong(sentence, "jali %s takes one %s; there are two, \"%.60s\" and \"%.60s\"", v->name, v->operand,
+                     set->operand, text);
+    set->operand = text;
+    return true;
+}
+
+bool parse_options(const verb *v, int argc, char **argv, settings *set, char sentence[SENTENCE_BYTES])
+{
+    bool options_ended = false;
+    for (int i = 0; i < argc; i++) {
+        bool is_option = !options_ended && argv[i][0] == '-' && argv[i][1] != 0;
+        if (is_option && strcmp(argv[i], "--") == 0)
+            options_ended = true;
+        else if (is_option ? !parse_one(v, argc, argv, &i, set, sentence)
+                           : !set_operand(v, argv[i], set, sentence))
+            return false;
+    }
+    if (set->help) return true;
+    if (v->operand && !set->operand) return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
+    if (*v->suffixes && set->output_count == 0)
+        return wrong(sentence, "jali %s needs an output file: -o NAME%s", v->name, v->suffixes);
+    if (set->place.width_mm == 0 && set->place.height_mm == 0) set->place.width_mm = jali_place_defaults().width_mm;
+    set->context.max_memory_bytes = (uint64_t)(set->max_memory_mb * 1e6);
+    return true;
+}
+
+void print_options(const verb *v)
+{
+    for (int32_t i = 0; i < OPTION_COUNT; i++) {
+        const option *o = &options[i];
+        char head[64];
+        if (!(o->group & v->groups)) continue;
+        snprintf(head, sizeof head, "--%s %s", o->name, o->value ? o->value : "");
+        printf("  %-30s %s\n", head, o->help);
+    }
+}

@@ -1,0 +1,21 @@
+// From argv to settings.
+#ifndef CLI_OPTIONS_H
+#define CLI_OPTIONS_H
+
+#include "cli.h"
+
+enum { SENTENCE_BYTES = 512 };
+
+settings default_settings(void);
+
+/// Read the arguments after the verb.
+///   out    sentence  what is wrong, when false comes back
+bool parse_options(const verb *v, int argc, char **argv, settings *set, char sentence[SENTENCE_BYTES]);
+
+/// The options a verb takes, a line each.
+void print_options(const verb *v);
+
+/// The name in the list that is nearest to what was typed; NULL when none is near.
+const char *nearest_name(const char *typed, const char *const *name, int32_t count);
+
+#endif

@@ -1,0 +1,112 @@
+// Output files.
+#include "outputs.h"
+#include "options.h"
+#include "base/file.h"
+
+#include <jali/png.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { LONGEST_SUFFIX = 8 };
+
+const char *suffix_of(const verb *v, const char *path)
+{
+    if (strcmp(path, "-") == 0) return v->suffixes;
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot : "";
+}
+
+// The verb's suffixes stand one after the other: ".3mf.stl".
+static bool knows_suffix(const verb *v, const char *suffix)
+{
+    char dotted[LONGEST_SUFFIX + 2], known[64];
+    size_t length = strlen(suffix);
+    if (length < 2 || length > LONGEST_SUFFIX) return false;
+    snprintf(dotted, sizeof dotted, "%s.", suffix);
+    snprintf(known, sizeof known, "%s.", v->suffixes);
+    return strcasestr(known, dotted) != NULL;
+}
+
+static bool same_file(const char *a, const char *b)
+{
+    struct stat one, other;
+    if (strcmp(a, b) == 0) return true;
+    return stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
+static bool check_output(const verb *v, const settings *set, const char *path, char *sentence)
+{
+    struct stat old;
+    bool standard = strcmp(path, "-") == 0;
+    if (!standard && !knows_suffix(v, suffix_of(v, path)))
+        snprintf(sentence, SENTENCE_BYTES, "%s: jali %s does not write this type; it writes %s", path, v->name,
+                 v->suffixes);
+    else if (standard && isatty(STDOUT_FILENO))
+        snprintf(sentence, SENTENCE_BYTES, "stdout is a terminal; send it to a file or a program");
+    else if (!standard && set->operand && same_file(path, set->operand))
+        snprintf(sentence, SENTENCE_BYTES, "%s is the input; the output needs another name", path);
+    else if (!standard && !set->force_overwrite && stat(path, &old) == 0 && S_ISREG(old.st_mode))
+        snprintf(sentence, SENTENCE_BYTES, "%s exists; --force-overwrite replaces it", path);
+    else
+        return true;
+    return false;
+}
+
+static bool check_text_output(const settings *set, const char *path, char *sentence)
+{
+    struct stat old;
+    if (!path || strcmp(path, "-") == 0) return true;
+    if (set->operand && same_file(path, set->operand))
+        snprintf(sentence, SENTENCE_BYTES, "%s is the input; the output needs another name", path);
+    else if (!set->force_overwrite && stat(path, &old) == 0 && S_ISREG(old.st_mode))
+        snprintf(sentence, SENTENCE_BYTES, "%s exists; --force-overwrite replaces it", path);
+    else
+        return true;
+    return false;
+}
+
+bool check_outputs(const verb *v, const settings *set, char *sentence)
+{
+    const char *path[MOST_OUTPUTS + 2];
+    int32_t count = 0;
+    for (int32_t i = 0; i < set->output_count; i++) {
+        if (!check_output(v, set, set->output[i], sentence)) return false;
+        path[count++] = set->output[i];
+    }
+    if (!check_text_output(set, set->json, sentence) || !check_text_output(set, set->report, sentence)) return false;
+    if (set->json) path[count++] = set->json;
+    if (set->report) path[count++] = set->report;
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t k = 0; k < i; k++)
+            if (same_file(path[i], path[k])) {
+                snprintf(sentence, SENTENCE_BYTES, "%s is named twice as an output", path[i]);
+                return false;
+            }
+    return true;
+}
+
+jali_status write_outputs(jali_context *ctx, const output *out, int32_t count)
+{
+    jali_status status = JALI_OK;
+    output_file file[MOST_OUTPUTS + 2] = {0};
+    for (int32_t i = 0; i < count; i++) TRY(output_open(ctx, out[i].path, &file[i]));
+    for (int32_t i = 0; i < count; i++) TRY(output_write(ctx, &file[i], out[i].bytes->data, out[i].bytes->size));
+    for (int32_t i = 0; i < count; i++) TRY(output_commit(ctx, &file[i]));
+done:
+    for (int32_t i = 0; i < count; i++) output_abandon(ctx, &file[i]);
+    return status;
+}
+
+jali_status write_bitmaps(jali_context *ctx, const settings *set, const jali_bitmap *bitmap, double pixel_mm)
+{
+    jali_status status;
+    jali_bytes png = {0};
+    output out[MOST_OUTPUTS];
+    TRY(jali_bitmap_png(ctx, bitmap, pixel_mm, &png));
+    for (int32_t i = 0; i < set->output_count; i++) out[i] = (output){set->output[i], &png};
+    TRY(write_outputs(ctx, out, set->output_count));
+done:
+    jali_bytes_free(ctx, &png);
+    return status;
+}

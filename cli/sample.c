@@ -1,0 +1,26 @@
+// jali sample NAME, jali list KIND.
+#include "outputs.h"
+
+#include <jali/sample.h>
+#include <stdio.h>
+
+jali_status run_sample(jali_context *ctx, const settings *set)
+{
+    jali_status status;
+    jali_bitmap bitmap = {0};
+    TRY(jali_sample(ctx, set->operand, set->size_px, &bitmap));
+    TRY(write_bitmaps(ctx, set, &bitmap, 0));
+done:
+    jali_bitmap_free(ctx, &bitmap);
+    return status;
+}
+
+jali_status run_list(jali_context *ctx, const settings *set)
+{
+    int32_t count;
+    if (strcmp(set->operand, "samples") != 0)
+        return fail(ctx, JALI_BAD_VALUE, "there is no list of \"%.40s\"; there is samples", set->operand);
+    const jali_sample_info *info = jali_sample_list(&count);
+    for (int32_t i = 0; i < count; i++) printf("%-14s %s\n", info[i].name, info[i].what);
+    return JALI_OK;
+}

@@ -1,0 +1,23 @@
+// A bitmap as a PNG file in memory.
+#ifndef JALI_PNG_H
+#define JALI_PNG_H
+
+#include <jali/bitmap.h>
+#include <jali/bytes.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// One bit a pixel; the same bytes for the same bitmap.
+///   in     pixel_mm  written into the file, so that programs know the size; 0 = unknown
+///   out    png       appended to
+///   fails  JALI_BAD_VALUE (no pixels), JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+///   cost   O(words)
+JALI_API jali_status jali_bitmap_png(jali_context *ctx, const jali_bitmap *bitmap, double pixel_mm,
+                                     jali_bytes *png);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,250 @@
+// The program itself: exit codes and sentences for each kind of bad input; earlier output stays untouched.
+#include "testing.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { TEXT_BYTES = 8192 };
+
+static char folder[] = "/tmp/jali-test-XXXXXX";
+static char said[TEXT_BYTES];   // stderr of the last run
+static char printed[TEXT_BYTES]; // its stdout
+
+static void read_text(const char *name, char text[TEXT_BYTES])
+{
+    FILE *file = fopen(name, "rb");
+    size_t size = file ? fread(text, 1, TEXT_BYTES - 1, file) : 0;
+    text[size] = 0;
+    if (file) fclose(file);
+}
+
+static pid_t start(const char *arguments)
+{
+    char command[2 * TEXT_BYTES];
+    const char *program = getenv("JALI_PROGRAM");
+    snprintf(command, sizeof command, "exec %s %s >stdout.txt 2>stderr.txt", program, arguments);
+    pid_t child = fork();
+    if (child == 0) {
+        execl("/bin/sh", "sh", "-c", command, (char *)NULL);
+        _exit(127);
+    }
+    return child;
+}
+
+static int finish(pid_t child)
+{
+    int state;
+    CHECK_INT(waitpid(child, &state, 0), child);
+    read_text("stderr.txt", said);
+    read_text("stdout.txt", printed);
+    return WIFEXITED(state) ? WEXITSTATUS(state) : 1000 + WTERMSIG(state);
+}
+
+// Run; its sentence must hold `words`, and a failure says exactly one line.
+static void run(const char *arguments, int wanted, const char *words)
+{
+    int code = finish(start(arguments));
+    int32_t lines = 0;
+    for (const char *c = said; *c; c++) lines += *c == '\n';
+    bool one_line = wanted == 0 || lines == 1;
+    if (code != wanted || !strstr(said, words) || !one_line)
+        print_error("jali %s: exit %d (wanted %d): %s", arguments, code, wanted, said);
+    CHECK_INT(code, wanted);
+    CHECK(strstr(said, words) && one_line);
+}
+
+static void write_text(const char *name, const char *text, size_t size)
+{
+    FILE *file = fopen(name, "wb");
+    CHECK(file && fwrite(text, 1, size, file) == size && fclose(file) == 0);
+}
+
+static int open_folder(void **state)
+{
+    (void)state;
+    if (!getenv("JALI_PROGRAM") || !*getenv("JALI_PROGRAM")) return -1;
+    if (!mkdtemp(folder) || chdir(folder) != 0) return -1;
+    write_text("two.pbm", "P1 4 3 0000 0110 0000", 21);
+    return 0;
+}
+
+static int close_folder(void **state)
+{
+    char command[64];
+    (void)state;
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command);
+}
+
+TEST(help_version_and_lists_go_to_stdout)
+{
+    run("--help", 0, "");
+    CHECK(strstr(printed, "jali sample NAME"));
+    run("--version", 0, "");
+    CHECK(strncmp(printed, "jali ", 5) == 0);
+    run("sample --help", 0, "");
+    CHECK(strstr(printed, "--size PX") && !strstr(printed, "--width"));
+    run("list samples", 0, "");
+    CHECK(strstr(printed, "girih") && *said == 0);
+}
+
+TEST(usage_is_checked_before_anything_is_done)
+{
+    run("", 2, "what shall be done");
+    run("smaple", 2, "did you mean \"jali sample\"");
+    run("zzzzzzzz", 2, "\"jali --help\"");
+    run("sample girih", 2, "needs an output file");
+    run("sample -o a.png", 2, "needs a NAME");
+    run("sample girih tree -o a.png", 2, "takes one NAME");
+    run("sample girih -o a.jpg", 2, "does not write this type");
+    run("sample girih -o a.png -o a.png", 2, "named twice");
+    run("sample girih -o a.png --sise 3", 2, "did you mean --size");
+    run("sample girih -o a.png --width 3", 2, "not an option of jali sample");
+    run("sample girih -o a.png --size", 2, "needs a value (PX)");
+    run("sample girih -o a.png --size=", 2, "needs a value (PX)");
+    run("sample girih -o a.png --size 100.5", 2, "whole number");
+    run("sample girih -o a.png --size 5", 2, "16 .. 32768 px");
+    run("sample girih -o a.png --quiet=3", 2, "takes no value");
+    run("sample lion -o a.png", 2, "there are girih");
+    run("list socks", 2, "there is samples");
+    CHECK(access("a.png", F_OK) != 0);
+}
+
+TEST(numbers_are_numbers_in_their_range)
+{
+    run("place two.pbm -o a.png --width nan", 2, "takes a number");
+    run("place two.pbm -o a.png --width inf", 2, "takes a number");
+    run("place two.pbm -o a.png --width 0", 2, "0.01 .. 10000 mm");
+    run("place two.pbm -o a.png --width -5", 2, "0.01 .. 10000 mm");
+    run("place two.pbm -o a.png --width 7cm", 2, "a number in mm");
+    run("place two.pbm -o a.png --width 1e9", 2, "0.01 .. 10000 mm");
+    run("place two.pbm -o a.png --width 40 --height 40", 2, "shape of the picture");
+    run("place two.pbm -o a.png --width 40 --phi-v 39", 1, "narrowest feature");
+    run("place two.pbm -o a.png --width 9000 --pixel 0.0002", 1, "coarser");
+    run("place two.pbm -o a.png --threshold 256", 2, "0 .. 255");
+    run("place two.pbm -o a.png --threshold maybe", 2, "takes a number");
+    run("place two.pbm -o a.png --crop 0,0,9,9", 2, "does not lie inside");
+    run("place two.pbm -o a.png --crop 0,0,4", 2, "left,top,width,height");
+    run("place two.pbm -o a.png --rotate 45", 2, "0, 90, 180 or 270");
+    CHECK(access("a.png", F_OK) != 0);
+}
+
+TEST(bad_pictures_are_rejected)
+{
+    write_text("empty.png", "", 0);
+    write_text("words.png", "hello, this is no picture at all", 32);
+    write_text("cut.png", "\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+    write_text("bomb.pbm", "P4 65000 8000 ", 14);
+    write_text("huge.pgm", "P5 99999999 99999999 255 ", 25);
+    write_text("white.pbm", "P1 2 2 0000", 11);
+    write_text("black.pbm", "P1 2 2 1111", 11);
+    write_text("a.gif", "GIF89a......", 12);
+    run("place empty.png -o a.png", 4, "the file is empty");
+    run("place words.png -o a.png", 4, "not a picture of a known type");
+    run("place cut.png -o a.png", 4, "truncated");
+    run("place bomb.pbm -o a.png", 4, "too few");
+    run("place huge.pgm -o a.png", 4, "too large");
+    run("place white.pbm -o a.png", 4, "all white");
+    run("place black.pbm -o a.png", 4, "all black");
+    run("place a.gif -o a.png", 4, "this is GIF");
+    run("place two.pbm -o a.png --threshold 0", 4, "all white at threshold 0");
+    run("place missing.png -o a.png", 1, "No such file");
+    run("place . -o a.png", 1, "directory");
+    CHECK(access("a.png", F_OK) != 0);
+}
+
+TEST(earlier_output_stays_untouched)
+{
+    char kept[TEXT_BYTES];
+    write_text("old.png", "precious", 8);
+    run("sample tree -o old.png --size 64", 2, "--force-overwrite replaces it");
+    run("place missing.png -o old.png --force-overwrite", 1, "No such file");
+    run("place two.pbm -o two.pbm.png -o nowhere/b.png", 1, "nowhere/b.png");
+    CHECK(access("two.pbm.png", F_OK) != 0); // all of them or none
+    run("place two.pbm -o old.png --force-overwrite --timeout 0.001 --width 3000 --pixel 0.05", 5, "time limit");
+    run("place two.pbm -o old.png --force-overwrite --max-memory 1 --width 2000 --pixel 0.1", 5, "memory limit");
+    read_text("old.png", kept);
+    assert_string_equal(kept, "precious");
+    run("sample tree -o old.png --size 64 --force-overwrite", 0, "");
+    read_text("old.png", kept);
+    CHECK(memcmp(kept, "\x89PNG", 4) == 0);
+    run("place old.png -o old.png --force-overwrite", 2, "is the input");
+}
+
+TEST(a_full_disk_is_a_sentence)
+{
+    if (access("/dev/full", W_OK) != 0) skip();
+    CHECK(symlink("/dev/full", "full.png") == 0);
+    run("sample girih -o full.png", 1, "No space left");
+    struct stat about;
+    CHECK(lstat("full.png", &about) == 0 && S_ISLNK(about.st_mode));
+}
+
+TEST(an_unwritable_folder_is_a_sentence)
+{
+    if (geteuid() == 0) skip();
+    CHECK(mkdir("locked", 0555) == 0);
+    run("sample girih -o locked/a.png", 1, "Permission denied");
+}
+
+TEST(pipes_carry_pictures)
+{
+    int code = finish(start("sample rings -o - --size 64 | $JALI_PROGRAM place - -o - --width 20 --pixel 0.1 --quiet"));
+    CHECK_INT(code, 0);
+    CHECK(memcmp(printed, "\x89PNG", 4) == 0 && *said == 0);
+}
+
+static void wait_until_it_reads(pid_t child)
+{
+    (void)child;
+    struct timespec while_it_starts = {0, 700000000};
+    nanosleep(&while_it_starts, NULL);
+}
+
+// The program waits for its standard input, which nobody closes, and is then interrupted.
+static void interrupt(int number)
+{
+    CHECK(access("pipe", F_OK) == 0 || mkfifo("pipe", 0600) == 0);
+    int hold = open("pipe", O_RDWR);
+    pid_t child = start("place - -o a.png <pipe");
+    wait_until_it_reads(child);
+    kill(child, number);
+    CHECK_INT(finish(child), 130);
+    CHECK(strstr(said, "interrupted"));
+    CHECK(access("a.png", F_OK) != 0);
+    close(hold);
+}
+
+TEST(an_interrupt_leaves_no_file)
+{
+    interrupt(SIGINT);
+    interrupt(SIGTERM);
+}
+
+TEST(nothing_half_written_is_left_behind)
+{
+    CHECK_INT(system("ls | grep -q part"), 1 << 8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(help_version_and_lists_go_to_stdout),
+        cmocka_unit_test(usage_is_checked_before_anything_is_done),
+        cmocka_unit_test(numbers_are_numbers_in_their_range),
+        cmocka_unit_test(bad_pictures_are_rejected),
+        cmocka_unit_test(earlier_output_stays_untouched),
+        cmocka_unit_test(a_full_disk_is_a_sentence),
+        cmocka_unit_test(an_unwritable_folder_is_a_sentence),
+        cmocka_unit_test(pipes_carry_pictures),
+        cmocka_unit_test(an_interrupt_leaves_no_file),
+        cmocka_unit_test(nothing_half_written_is_left_behind),
+    };
+    return cmocka_run_group_tests(tests, open_folder, close_folder);
+}
