@@ -84,6 +84,12 @@ JALI_API jali_status jali_check_sentences(jali_context *ctx, const jali_check_re
 ///   coordinates_exact  boolean
 JALI_API jali_status jali_check_json(jali_context *ctx, const jali_check_report *report, jali_bytes *json);
 
+/// Read a written STL or 3MF back and compare it with the mesh it was made from.
+///   in     data   the file, whole
+///   fails  JALI_BROKEN when a triangle is gone, joins other vertices (two that fell on one place in float32, too)
+///          or has moved in float32; what jali_read_model_bytes says
+JALI_API jali_status jali_check_readback(jali_context *ctx, const void *data, size_t size, const jali_mesh *mesh);
+
 #ifdef __cplusplus
 }
 #endif

@@ -17,6 +17,12 @@ extern "C" {
 JALI_API jali_status jali_bitmap_png(jali_context *ctx, const jali_bitmap *bitmap, double pixel_mm,
                                      jali_bytes *png);
 
+/// Append a PNG file of 8-bit colours: maps, overlays, thumbnails.
+///   in     rgb    [height_px][width_px][3], rows from the top
+///   fails  JALI_BAD_VALUE (a side outside 1 .. 2^20 px), JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+JALI_API jali_status jali_rgb_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *rgb,
+                                  jali_bytes *bytes);
+
 #ifdef __cplusplus
 }
 #endif

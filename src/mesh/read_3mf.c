@@ -1,0 +1,423 @@
+// 3MF: a ZIP archive with an XML model; objects of triangles, components that place objects, a build that places
+// both.
+//
+// Source:  3MF Core Specification 1.3 (units, transforms as rows, objects defined before they are used).
+// Limits:  no production extension (parts in other files), no slices, no beams: what they say is not read. Nothing
+//          with a document type is accepted, so there are no entities to expand.
+// Checked: tests/test_model.c, fuzz/fuzz_3mf.c.
+#include "mesh/readers.h"
+
+#include "base/number.h"
+#include "mesh/archive.h"
+
+#include <expat.h>
+
+#define CORE "http://schemas.microsoft.com/3dmanufacturing/core/2015/02|"
+
+enum { MAX_OBJECTS = 20000, MAX_PLACED = 1000000, MAX_DEPTH = 32 };
+
+typedef struct transform {
+    double m[12]; // rows of a 4 x 3 matrix: a point is a row from the left
+} transform;
+
+static const transform identity = {{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}};
+
+// An object placed by a component or by the build.
+typedef struct placed {
+    int32_t object;
+    transform at;
+} placed;
+
+typedef struct object {
+    uint32_t id;
+    int32_t first_vertex, vertex_count, first_triangle, triangle_count;
+    int32_t first_part, part_count;         // its components
+    int64_t all_vertices, all_triangles, instances; // with those of its components
+    int32_t depth;                          // 1 without components
+} object;
+
+typedef struct model {
+    jali_context *ctx;
+    const model_file *file;
+    XML_Parser parser;
+    jali_status status;
+    double unit_mm;
+    double (*vertex)[3];      // of all objects
+    int32_t (*triangle)[3];   // indices within their object
+    object *object;
+    placed *part, *item;      // components of all objects; the build
+    int32_t *by_id;           // [object_count], ascending ids
+    size_t vertex_count, triangle_count, object_count, part_count, item_count;
+    size_t vertex_room, triangle_room, object_room, part_room, item_room, by_id_room;
+    bool in_object, in_build, is_model;
+    char start_part[256];
+} model;
+
+// ---- reading the XML ----
+
+static void refuse(model *m, jali_status status)
+{
+    if (m->status == JALI_OK) m->status = status;
+    XML_StopParser(m->parser, XML_FALSE);
+}
+
+#define REFUSE(m, ...) refuse((m), fail((m)->ctx, JALI_BAD_INPUT, __VA_ARGS__))
+#define LINE(m) ((unsigned long)XML_GetCurrentLineNumber((m)->parser))
+
+static const char *attribute(const XML_Char **attributes, const char *name)
+{
+    for (; *attributes; attributes += 2)
+        if (strcmp(attributes[0], name) == 0) return attributes[1];
+    return NULL;
+}
+
+static bool whole_number(const char *text, uint32_t limit, uint32_t *value)
+{
+    uint64_t number = 0;
+    if (!text || !*text) return false;
+    for (; *text >= '0' && *text <= '9' && number <= limit; text++) number = number * 10 + (uint64_t)(*text - '0');
+    *value = (uint32_t)number;
+    return *text == 0 && number <= limit;
+}
+
+static bool decimal(const char *text, double *value)
+{
+    if (!text) return false;
+    const char *end = text + strlen(text);
+    return read_decimal(&text, end, value) && text == end;
+}
+
+static bool transform_of(const char *text, transform *t)
+{
+    *t = identity;
+    if (!text) return true;
+    const char *end = text + strlen(text);
+    for (int i = 0; i < 12; i++) {
+        while (*text == ' ') text++;
+        if (!read_decimal(&text, end, &t->m[i])) return false;
+    }
+    while (*text == ' ') text++;
+    return *text == 0;
+}
+
+// Where in by_id the id is, or would be.
+static size_t place_of_id(const model *m, uint32_t id)
+{
+    size_t low = 0, high = m->object_count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (m->object[m->by_id[middle]].id < id) low = middle + 1;
+        else high = middle;
+    }
+    return low;
+}
+
+static int32_t object_with(const model *m, const char *text)
+{
+    uint32_t id;
+    if (!whole_number(text, INT32_MAX, &id)) return -1;
+    size_t place = place_of_id(m, id);
+    return place < m->object_count && m->object[m->by_id[place]].id == id ? m->by_id[place] : -1;
+}
+
+static void start_object(model *m, const XML_Char **attributes)
+{
+    uint32_t id;
+    const char *text = attribute(attributes, "id");
+    if (m->in_object || !whole_number(text, INT32_MAX, &id) || object_with(m, text) >= 0) {
+        REFUSE(m, "%s, line %lu: an object needs an id of its own", m->file->name, LINE(m));
+        return;
+    }
+    if (m->object_count == MAX_OBJECTS) {
+        refuse(m, fail(m->ctx, JALI_LIMIT, "%s has more than %d objects", m->file->name, MAX_OBJECTS));
+        return;
+    }
+    jali_status status = GROW(m->ctx, m->object, m->object_room, m->object_count + 1);
+    if (status == JALI_OK) status = GROW(m->ctx, m->by_id, m->by_id_room, m->object_count + 1);
+    if (status != JALI_OK) {
+        refuse(m, status);
+        return;
+    }
+    size_t place = place_of_id(m, id);
+    memmove(m->by_id + place + 1, m->by_id + place, (m->object_count - place) * sizeof *m->by_id);
+    m->by_id[place] = (int32_t)m->object_count;
+    m->object[m->object_count++] = (object){.id = id, .first_vertex = (int32_t)m->vertex_count,
+                                            .first_triangle = (int32_t)m->triangle_count,
+                                            .first_part = (int32_t)m->part_count};
+    m->in_object = true;
+}
+
+static void add_vertex(model *m, const XML_Char **attributes)
+{
+    static const char *const axis[] = {"x", "y", "z"};
+    double at[3];
+    for (int k = 0; k < 3; k++)
+        if (!decimal(attribute(attributes, axis[k]), &at[k])) {
+            REFUSE(m, "%s, line %lu: a vertex needs a finite number as %s", m->file->name, LINE(m), axis[k]);
+            return;
+        }
+    jali_status status = m->vertex_count >= (size_t)3 * (size_t)m->file->opt.max_triangles
+        ? fail(m->ctx, JALI_LIMIT, "%s has more vertices than %d triangles can use", m->file->name,
+               m->file->opt.max_triangles)
+        : GROW(m->ctx, m->vertex, m->vertex_room, m->vertex_count + 1);
+    if (status == JALI_OK) memcpy(m->vertex[m->vertex_count++], at, sizeof at);
+    else refuse(m, status);
+}
+
+static void add_triangle(model *m, const XML_Char **attributes)
+{
+    static const char *const corner[] = {"v1", "v2", "v3"};
+    uint32_t index;
+    int32_t t[3];
+    int64_t known = (int64_t)m->vertex_count - m->object[m->object_count - 1].first_vertex;
+    for (int k = 0; k < 3; k++) {
+        if (!whole_number(attribute(attributes, corner[k]), INT32_MAX, &index) || index >= known) {
+            REFUSE(m, "%s, line %lu: %s is not one of the object's %lld vertices", m->file->name, LINE(m),
+                   corner[k], (long long)known);
+            return;
+        }
+        t[k] = (int32_t)index;
+    }
+    jali_status status = m->triangle_count >= (size_t)m->file->opt.max_triangles
+        ? fail(m->ctx, JALI_LIMIT, "%s has more than %d triangles", m->file->name, m->file->opt.max_triangles)
+        : GROW(m->ctx, m->triangle, m->triangle_room, m->triangle_count + 1);
+    if (status == JALI_OK) memcpy(m->triangle[m->triangle_count++], t, sizeof t);
+    else refuse(m, status);
+}
+
+// A component or an item of the build: both place an object that was defined before.
+static void add_placed(model *m, const XML_Char **attributes, bool component)
+{
+    placed p = {.object = object_with(m, attribute(attributes, "objectid"))};
+    bool itself = component && p.object == (int32_t)m->object_count - 1;
+    if (p.object < 0 || itself || !transform_of(attribute(attributes, "transform"), &p.at)) {
+        REFUSE(m, "%s, line %lu: %s needs the id of an earlier object, and 12 numbers if it has a transform",
+               m->file->name, LINE(m), component ? "a component" : "an item");
+        return;
+    }
+    size_t *count = component ? &m->part_count : &m->item_count;
+    jali_status status = *count >= MAX_PLACED
+        ? fail(m->ctx, JALI_LIMIT, "%s places objects more than %d times", m->file->name, MAX_PLACED)
+        : component ? GROW(m->ctx, m->part, m->part_room, *count + 1)
+                    : GROW(m->ctx, m->item, m->item_room, *count + 1);
+    if (status == JALI_OK) (component ? m->part : m->item)[(*count)++] = p;
+    else refuse(m, status);
+}
+
+static void start_model(model *m, const XML_Char **attributes)
+{
+    static const struct { const char *name; double mm; } units[] = {
+        {"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000},
+    };
+    const char *unit = attribute(attributes, "unit");
+    m->is_model = true;
+    m->unit_mm = unit ? 0 : 1;
+    for (size_t i = 0; unit && i < sizeof units / sizeof *units; i++)
+        if (strcmp(unit, units[i].name) == 0) m->unit_mm = units[i].mm;
+    if (m->unit_mm == 0) REFUSE(m, "%s: unknown unit \"%.40s\"", m->file->name, unit);
+}
+
+static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **attributes)
+{
+    model *m = user;
+    if (m->status != JALI_OK || strncmp(name, CORE, strlen(CORE)) != 0) return;
+    name += strlen(CORE);
+    if (strcmp(name, "vertex") == 0 && m->in_object) add_vertex(m, attributes);
+    else if (strcmp(name, "triangle") == 0 && m->in_object) add_triangle(m, attributes);
+    else if (strcmp(name, "object") == 0) start_object(m, attributes);
+    else if (strcmp(name, "component") == 0 && m->in_object) add_placed(m, attributes, true);
+    else if (strcmp(name, "build") == 0) m->in_build = true;
+    else if (strcmp(name, "item") == 0 && m->in_build) add_placed(m, attributes, false);
+    else if (strcmp(name, "model") == 0) start_model(m, attributes);
+}
+
+// The sizes of an object with all its components, which are complete because they came before.
+static void finish_object(model *m)
+{
+    object *o = &m->object[m->object_count - 1];
+    m->in_object = false;
+    o->vertex_count = (int32_t)m->vertex_count - o->first_vertex;
+    o->triangle_count = (int32_t)m->triangle_count - o->first_triangle;
+    o->part_count = (int32_t)m->part_count - o->first_part;
+    o->all_vertices = o->vertex_count;
+    o->all_triangles = o->triangle_count;
+    o->instances = o->depth = 1;
+    for (int32_t i = 0; i < o->part_count; i++) {
+        const object *p = &m->object[m->part[o->first_part + i].object];
+        o->all_vertices = MIN(o->all_vertices + p->all_vertices, INT32_MAX);
+        o->all_triangles = MIN(o->all_triangles + p->all_triangles, INT32_MAX);
+        o->instances = MIN(o->instances + p->instances, INT32_MAX);
+        o->depth = MAX(o->depth, p->depth + 1);
+    }
+    if (o->depth > MAX_DEPTH)
+        refuse(m, fail(m->ctx, JALI_LIMIT, "%s nests components more than %d deep", m->file->name, MAX_DEPTH));
+}
+
+static void XMLCALL on_end(void *user, const XML_Char *name)
+{
+    model *m = user;
+    if (m->status != JALI_OK || strncmp(name, CORE, strlen(CORE)) != 0) return;
+    name += strlen(CORE);
+    if (strcmp(name, "object") == 0 && m->in_object) finish_object(m);
+    else if (strcmp(name, "build") == 0) m->in_build = false;
+}
+
+static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char *system_id,
+                               const XML_Char *public_id, int has_internal_subset)
+{
+    (void)name, (void)system_id, (void)public_id, (void)has_internal_subset;
+    model *m = user;
+    REFUSE(m, "%s declares a document type, which a 3MF must not", m->file->name);
+}
+
+// In _rels/.rels: the name of the part that holds the model.
+static void XMLCALL on_relationship(void *user, const XML_Char *name, const XML_Char **attributes)
+{
+    static const char kind[] = "/3dmodel";
+    model *m = user;
+    const char *bar = strrchr(name, '|'), *type = attribute(attributes, "Type");
+    const char *target = attribute(attributes, "Target");
+    if (!bar || strcmp(bar, "|Relationship") != 0 || !type || !target || m->start_part[0]) return;
+    size_t length = strlen(type);
+    if (length < sizeof kind || strcmp(type + length - (sizeof kind - 1), kind) != 0) return;
+    while (*target == '/') target++;
+    if (strlen(target) < sizeof m->start_part) strcpy(m->start_part, target);
+}
+
+static jali_status feed(void *user, const char *piece, size_t size, bool last)
+{
+    model *m = user;
+    if (XML_Parse(m->parser, piece, (int)size, last) == XML_STATUS_OK) return JALI_OK;
+    if (m->status != JALI_OK) return m->status;
+    enum XML_Error error = XML_GetErrorCode(m->parser);
+    if (error == XML_ERROR_NO_MEMORY) return fail(m->ctx, JALI_NO_MEMORY, "no memory to parse %s", m->file->name);
+    return fail(m->ctx, JALI_BAD_INPUT, "%s, line %lu: %s", m->file->name, LINE(m), XML_ErrorString(error));
+}
+
+static jali_status parse_part(model *m, zip_t *archive, const char *part, XML_StartElementHandler start,
+                              XML_EndElementHandler end)
+{
+    m->parser = XML_ParserCreateNS(NULL, '|');
+    if (!m->parser) return fail(m->ctx, JALI_NO_MEMORY, "no memory to parse %s", m->file->name);
+    XML_SetUserData(m->parser, m);
+    XML_SetElementHandler(m->parser, start, end);
+    XML_SetStartDoctypeDeclHandler(m->parser, on_doctype);
+    jali_status status = archive_unpack(m->ctx, archive, m->file->name, part, m->file->opt.max_bytes, feed, m);
+    XML_ParserFree(m->parser);
+    m->parser = NULL;
+    return status;
+}
+
+// ---- placing the objects ----
+
+// First a, then b.
+static transform after(const transform *a, const transform *b)
+{
+    transform c;
+    for (int row = 0; row < 4; row++)
+        for (int k = 0; k < 3; k++) {
+            const double *r = a->m + 3 * row;
+            c.m[3 * row + k] = r[0] * b->m[k] + r[1] * b->m[3 + k] + r[2] * b->m[6 + k] + (row == 3 ? b->m[9 + k] : 0);
+        }
+    return c;
+}
+
+static bool mirrors(const transform *t)
+{
+    const double *m = t->m;
+    return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+               m[2] * (m[3] * m[7] - m[4] * m[6]) < 0;
+}
+
+// Append one object's own triangles; a mirror image is turned so that outside stays outside.
+static void place_object(const model *m, const object *o, const transform *t, jali_mesh *mesh)
+{
+    bool turn = mirrors(t);
+    for (int32_t i = 0; i < o->triangle_count; i++) {
+        const int32_t *from = m->triangle[o->first_triangle + i];
+        int32_t *to = mesh->triangle[mesh->triangle_count++];
+        for (int k = 0; k < 3; k++) to[k] = mesh->vertex_count + from[turn ? 2 - k : k];
+    }
+    for (int32_t i = 0; i < o->vertex_count; i++) {
+        const double *p = m->vertex[o->first_vertex + i];
+        for (int k = 0; k < 3; k++)
+            mesh->vertex[mesh->vertex_count][k] =
+                m->unit_mm * (p[0] * t->m[k] + p[1] * t->m[3 + k] + p[2] * t->m[6 + k] + t->m[9 + k]);
+        mesh->vertex_count++;
+    }
+}
+
+// Walk the components below one item with a stack of our own; its depth was checked when the objects were read.
+static void place_item(const model *m, const placed *item, jali_mesh *mesh)
+{
+    struct { placed here; int32_t next; } stack[MAX_DEPTH + 1];
+    int32_t depth = 0;
+    stack[depth].here = *item;
+    stack[depth++].next = 0;
+    place_object(m, &m->object[item->object], &item->at, mesh);
+    while (depth > 0) {
+        const object *o = &m->object[stack[depth - 1].here.object];
+        if (stack[depth - 1].next == o->part_count) {
+            depth--;
+            continue;
+        }
+        const placed *part = &m->part[o->first_part + stack[depth - 1].next++];
+        placed below = {part->object, after(&part->at, &stack[depth - 1].here.at)};
+        place_object(m, &m->object[below.object], &below.at, mesh);
+        stack[depth].here = below;
+        stack[depth++].next = 0;
+    }
+}
+
+static jali_status place_all(const model *m, jali_mesh *mesh)
+{
+    jali_status status;
+    int64_t vertices = 0, triangles = 0, instances = 0;
+    const char *name = m->file->name;
+    if (m->item_count == 0) TRY(fail(m->ctx, JALI_BAD_INPUT, "%s: nothing is placed in its build", name));
+    for (size_t i = 0; i < m->item_count; i++) {
+        const object *o = &m->object[m->item[i].object];
+        vertices += o->all_vertices;
+        triangles += o->all_triangles;
+        instances += o->instances;
+    }
+    if (triangles > m->file->opt.max_triangles || vertices > 3 * (int64_t)m->file->opt.max_triangles ||
+        instances > MAX_PLACED)
+        TRY(fail(m->ctx, JALI_LIMIT, "%s places %lld triangles in %lld parts; limits are %d and %d", name,
+                 (long long)triangles, (long long)instances, m->file->opt.max_triangles, MAX_PLACED));
+    if (triangles == 0) TRY(fail(m->ctx, JALI_BAD_INPUT, "%s holds no triangles", name));
+    TRY(mesh_create(m->ctx, (int32_t)vertices, (int32_t)triangles, mesh));
+    mesh->vertex_count = mesh->triangle_count = 0;
+    for (size_t i = 0; i < m->item_count; i++) place_item(m, &m->item[i], mesh);
+    TRY(mesh_validate(m->ctx, mesh)); // a transform may have passed the largest number
+done:
+    return status;
+}
+
+bool looks_like_3mf(const model_file *file)
+{
+    return file->size >= 4 && memcmp(file->data, "PK\3\4", 4) == 0;
+}
+
+jali_status read_3mf(jali_context *ctx, const model_file *file, jali_mesh *mesh)
+{
+    jali_status status;
+    model m = {.ctx = ctx, .file = file};
+    zip_t *archive = NULL;
+    TRY(archive_open(ctx, file->data, file->size, file->name, &archive));
+    if (archive_has(archive, "_rels/.rels")) TRY(parse_part(&m, archive, "_rels/.rels", on_relationship, NULL));
+    if (!m.start_part[0]) strcpy(m.start_part, "3D/3dmodel.model");
+    TRY(parse_part(&m, archive, m.start_part, on_start, on_end));
+    if (!m.is_model) TRY(fail(ctx, JALI_BAD_INPUT, "%s: %s is no 3MF model", file->name, m.start_part));
+    TRY(place_all(&m, mesh));
+done:
+    if (status != JALI_OK) jali_mesh_free(ctx, mesh);
+    archive_close(archive);
+    release(ctx, m.vertex);
+    release(ctx, m.triangle);
+    release(ctx, m.object);
+    release(ctx, m.part);
+    release(ctx, m.item);
+    release(ctx, m.by_id);
+    return status;
+}
