@@ -3,6 +3,7 @@
 
 #include <jali/check.h>
 #include <jali/model.h>
+#include <jali/png.h>
 #include <jali/write.h>
 #include "base/file.h"
 #include "base/number.h"
@@ -230,7 +231,7 @@ TEST(a_png_holds_the_bitmap)
     for (int32_t width = 1; width < 200; width += 37) {
         jali_bitmap bitmap = random_bitmap(&seed, width, 21, 40);
         jali_bytes bytes = {0};
-        CHECK_OK(jali_write_png(ctx, &bitmap, 0.1, &bytes));
+        CHECK_OK(jali_bitmap_png(ctx, &bitmap, 0.1, &bytes));
         memory from = {&bytes, 0};
         png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
         png_infop info = png_create_info_struct(png);
