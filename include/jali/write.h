@@ -57,8 +57,8 @@ JALI_API jali_status jali_write_bytes(jali_context *ctx, jali_format format, con
 /// Binary STL. Coordinates are rounded to float32.
 JALI_API jali_status jali_write_stl(jali_context *ctx, const jali_mesh *mesh, jali_bytes *bytes);
 
-/// 3MF: one object in millimetres. Coordinates on a lattice of 2^-16 mm are exact, others exact as float32 (or as
-/// double when they are no float32).
+/// 3MF: one object in millimetres. Coordinates that are float32 values are written to be read as such (slicers and
+/// jali_read_model do), others as doubles.
 ///   cost   O(triangles): about 0.3 s and 100 bytes of memory each for a million
 JALI_API jali_status jali_write_3mf(jali_context *ctx, const jali_mesh *mesh, const jali_write_options *opt,
                                     jali_bytes *bytes);

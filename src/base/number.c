@@ -147,17 +147,12 @@ static int write_by_printf(char text[DECIMAL_BYTES], double value)
 
 int write_decimal(char text[DECIMAL_BYTES], double value)
 {
-    enum { BITS = 16 };
-    const uint64_t five_to_bits = UINT64_C(152587890625);
     int length = 0;
     double magnitude = fabs(value);
     if (value < 0) text[length++] = '-';
-    double units = magnitude * (1 << BITS);
-    if (magnitude < 1099511627776.0 && units == floor(units)) {
-        uint64_t whole = (uint64_t)units;
-        return length + write_fixed(text + length, whole >> BITS, (whole & ((1 << BITS) - 1)) * five_to_bits, BITS);
-    }
-    if (magnitude == (double)(float)magnitude && magnitude > 1e-4 && magnitude < 1e9) {
+    if (magnitude < 1e15 && magnitude == floor(magnitude))
+        return length + write_whole(text + length, (uint64_t)magnitude);
+    if (magnitude == (double)(float)magnitude && magnitude > 1e-4 && magnitude < 16777216) {
         int written = write_float(text + length, magnitude);
         if (written) return length + written;
     }

@@ -10,10 +10,8 @@ enum { DECIMAL_BYTES = 32 }; // room for the longest text of write_decimal
 /// False when there is none, or it is not finite; *at is then unmoved.
 bool read_decimal(const char **at, const char *end, double *value);
 
-/// Write a finite number so that it reads back the same. Returns the length, no end mark.
-///   multiples of 2^-16 below 2^40   their exact decimals (all readers agree on them, float32 or double)
-///   other float32 values            the shortest decimal that a float32 reader takes for the same
-///   other doubles                   the shortest decimal that a double reader takes for the same
+/// Write a finite number in the fewest digits that read back the same: a float32 value as read into a float32,
+/// any other as read into a double. Returns the length, no end mark.
 int write_decimal(char text[DECIMAL_BYTES], double value);
 
 /// Write a whole number >= 0. Returns the length, no end mark.

@@ -99,13 +99,23 @@ static bool sectors_overlap(bool narrow, int dropped, const point a[3], const po
     return false;
 }
 
+// Does the ray from a[0] to q, in the plane of a, run within a's sector?
+static bool sector_holds(bool narrow, int dropped, const point a[3], point q)
+{
+    int turn = turn_in_plane(narrow, dropped, a[0], a[1], a[2]);
+    return turn * turn_in_plane(narrow, dropped, a[0], a[1], q) >= 0 &&
+           turn * turn_in_plane(narrow, dropped, a[0], a[2], q) <= 0;
+}
+
 // a[0] and b[0] are one vertex.
 static bool at_vertex_meet(bool narrow, const point a[3], const point b[3])
 {
     normal na = normal_of(narrow, a[0], a[1], a[2]);
     int b1 = side_of(narrow, &na, a[0], b[1]), b2 = side_of(narrow, &na, a[0], b[2]);
-    if (b1 == 0 && b2 == 0) return sectors_overlap(narrow, axis_of(&na), a, b);
     if (b1 * b2 > 0) return false;
+    if (b1 == 0 && b2 == 0) return sectors_overlap(narrow, axis_of(&na), a, b);
+    if (b1 == 0) return sector_holds(narrow, axis_of(&na), a, b[1]); // only this arm of b is in a's plane
+    if (b2 == 0) return sector_holds(narrow, axis_of(&na), a, b[2]);
     normal nb = normal_of(narrow, b[0], b[1], b[2]);
     int a1 = side_of(narrow, &nb, b[0], a[1]), a2 = side_of(narrow, &nb, b[0], a[2]);
     if (a1 * a2 > 0) return false;

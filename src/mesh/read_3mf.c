@@ -2,7 +2,8 @@
 // both.
 //
 // Source:  3MF Core Specification 1.3 (units, transforms as rows, objects defined before they are used).
-// Limits:  no production extension (parts in other files), no slices, no beams: what they say is not read. Nothing
+// Limits:  coordinates are rounded to float32 once placed, as slicers do: what is judged is what gets printed.
+//          No production extension (parts in other files), no slices, no beams: what they say is not read. Nothing
 //          with a document type is accepted, so there are no entities to expand.
 // Checked: tests/test_model.c, fuzz/fuzz_3mf.c.
 #include "mesh/readers.h"
@@ -342,7 +343,7 @@ static void place_object(const model *m, const object *o, const transform *t, ja
         const double *p = m->vertex[o->first_vertex + i];
         for (int k = 0; k < 3; k++)
             mesh->vertex[mesh->vertex_count][k] =
-                m->unit_mm * (p[0] * t->m[k] + p[1] * t->m[3 + k] + p[2] * t->m[6 + k] + t->m[9 + k]);
+                (float)(m->unit_mm * (p[0] * t->m[k] + p[1] * t->m[3 + k] + p[2] * t->m[6 + k] + t->m[9 + k]));
         mesh->vertex_count++;
     }
 }
