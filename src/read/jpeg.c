@@ -27,6 +27,7 @@ typedef struct jpeg_job {
     jali_picture *picture;
     uint8_t *row;       // [output_width * output_components]
     void *booked;       // what libjpeg allocates by itself
+    int32_t orientation; // EXIF's, 1 .. 8
 } jpeg_job;
 
 static void on_error(j_common_ptr common)
@@ -93,16 +94,21 @@ static int32_t exif_orientation(const uint8_t *exif, size_t size)
     return 1;
 }
 
+static int32_t find_orientation(const struct jpeg_decompress_struct *jpeg)
+{
+    int32_t orientation = 1;
+    for (jpeg_saved_marker_ptr m = jpeg->marker_list; m && orientation == 1; m = m->next)
+        if (m->marker == EXIF_MARKER) orientation = exif_orientation(m->data, m->data_length);
+    return orientation;
+}
+
 // Orientations 1 .. 8 as clockwise quarter turns, then a mirror.
-static jali_status lay_upright(jpeg_job *job)
+static jali_status lay_upright(const jpeg_job *job)
 {
     static const int32_t turns[9] = {0, 0, 0, 2, 2, 1, 1, 3, 3};
     static const bool mirrored[9] = {0, 0, 1, 0, 1, 1, 0, 1, 0};
-    int32_t orientation = 1;
-    for (jpeg_saved_marker_ptr m = job->jpeg.marker_list; m; m = m->next)
-        if (m->marker == EXIF_MARKER && orientation == 1) orientation = exif_orientation(m->data, m->data_length);
-    jali_status status = turn_picture(job->ctx, job->picture, turns[orientation]);
-    if (status == JALI_OK && mirrored[orientation]) mirror_picture(job->picture);
+    jali_status status = turn_picture(job->ctx, job->picture, turns[job->orientation]);
+    if (status == JALI_OK && mirrored[job->orientation]) mirror_picture(job->picture);
     return status;
 }
 
@@ -120,6 +126,7 @@ static void read_header(jpeg_job *job)
     struct jpeg_decompress_struct *jpeg = &job->jpeg;
     jpeg_save_markers(jpeg, EXIF_MARKER, 0xffff);
     jpeg_read_header(jpeg, TRUE);
+    job->orientation = find_orientation(jpeg);
     uint64_t fewest = jpeg->arith_code ? 0 : (uint64_t)jpeg->image_width * jpeg->image_height / MOST_PX_A_BYTE;
     stop_unless_ok(job, picture_of_size(job->ctx, job->from, jpeg->image_width, jpeg->image_height, fewest,
                                         job->picture));

@@ -118,17 +118,20 @@ done:
     return status;
 }
 
+// Colours of a small maximum are widened first, or their luma would be rounded to it.
+static uint32_t widened(uint32_t sample, uint32_t top)
+{
+    return (sample * 65535 + top / 2) / top;
+}
+
 static jali_status read_pixel(pnm *file, uint8_t *grey)
 {
     jali_status status;
-    uint32_t red = 0, green = 0, blue = 0;
-    TRY(read_sample(file, &red));
-    if (file->kind % 3 == 0) {
-        TRY(read_sample(file, &green));
-        TRY(read_sample(file, &blue));
-        red = luma(red, green, blue);
-    }
-    *grey = to_grey(red, file->top);
+    uint32_t sample[3] = {0}, top = file->top;
+    bool coloured = file->kind % 3 == 0;
+    for (int32_t i = 0; i < (coloured ? 3 : 1); i++) TRY(read_sample(file, &sample[i]));
+    *grey = coloured ? to_grey(luma(widened(sample[0], top), widened(sample[1], top), widened(sample[2], top)), 65535)
+                     : to_grey(sample[0], top);
 done:
     return status;
 }
