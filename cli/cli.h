@@ -43,12 +43,13 @@ typedef struct settings {
 typedef enum option_group {
     GROUP_PICTURE = 1,  // reading and thresholding
     GROUP_SIZE = 2,     // size on the surface, printer
-    GROUP_FILES = 4,    // -o, --json, --force-overwrite
+    GROUP_FILES = 4,    // -o
     GROUP_SAMPLE = 8,
     GROUP_CHECK = 16,
     GROUP_RUN = 32,     // every verb
     GROUP_JSON = 64,
     GROUP_REPORT = 128,
+    GROUP_OVERWRITE = 256,
 } option_group;
 
 typedef struct verb {
@@ -64,6 +65,7 @@ const verb *verb_list(int32_t *count);
 
 jali_status run_sample(jali_context *ctx, const settings *set);
 jali_status run_list(jali_context *ctx, const settings *set);
+jali_status run_check(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 
 /// Read, threshold: the picture the user named, an SVG too where librsvg is at hand.

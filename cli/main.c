@@ -7,9 +7,11 @@
 #include <stdio.h>
 
 static const verb verbs[] = {
+    {"check", "MODEL", "is a model (STL, 3MF) a solid: closed, manifold, outward, nowhere through itself",
+     GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
     {"place", "PICTURE", "put a picture on the printer's working grid, nothing else changed",
-     GROUP_PICTURE | GROUP_SIZE | GROUP_FILES | GROUP_RUN, ".png", run_place},
-    {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | GROUP_FILES | GROUP_RUN, ".png", run_sample},
+     GROUP_PICTURE | GROUP_SIZE | GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN, ".png", run_place},
+    {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN, ".png", run_sample},
     {"list", "KIND", "list what is built in: samples", GROUP_RUN, "", run_list},
 };
 

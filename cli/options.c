@@ -26,7 +26,7 @@ typedef struct option {
 
 static const option options[] = {
     {"output", "FILE", OUTPUT, GROUP_FILES, 0, 0, 0, 0, "write this file (also -o; several may be given; - is stdout)"},
-    {"force-overwrite", NULL, FLAG, GROUP_FILES, FIELD(force_overwrite), 0, 0, 0, "replace output files that exist"},
+    {"force-overwrite", NULL, FLAG, GROUP_OVERWRITE, FIELD(force_overwrite), 0, 0, 0, "replace output files that exist"},
     {"json", "FILE", TEXT, GROUP_JSON, FIELD(json), 0, 0, 0, "write the figures as JSON (- is stdout)"},
     {"report", "FILE", TEXT, GROUP_REPORT, FIELD(report), 0, 0, 0, "write a report as one HTML file"},
 

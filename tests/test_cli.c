@@ -159,6 +159,36 @@ TEST(bad_pictures_are_rejected)
     CHECK(access("a.png", F_OK) != 0);
 }
 
+// A tetrahedron as text, without its last face when it shall be open.
+static void write_tetrahedron(const char *name, bool closed)
+{
+    static const char *const face[] = {"0 0 0\nvertex 0 1 0\nvertex 1 0 0", "0 0 0\nvertex 1 0 0\nvertex 0 0 1",
+                                       "0 0 0\nvertex 0 0 1\nvertex 0 1 0", "1 0 0\nvertex 0 1 0\nvertex 0 0 1"};
+    FILE *stl = fopen(name, "wb");
+    CHECK(stl != NULL);
+    fprintf(stl, "solid t\n");
+    for (int32_t i = 0; i < (closed ? 4 : 3); i++)
+        fprintf(stl, "facet normal 0 0 0\nouter loop\nvertex %s\nendloop\nendfacet\n", face[i]);
+    fprintf(stl, "endsolid t\n");
+    CHECK(fclose(stl) == 0);
+}
+
+TEST(models_are_checked)
+{
+    write_tetrahedron("solid.stl", true);
+    write_tetrahedron("open.stl", false);
+    run("check solid.stl", 0, "");
+    CHECK(strstr(printed, "4 vertices, 4 triangles") && strstr(printed, "is a solid"));
+    run("check solid.stl --json -", 0, "");
+    CHECK(printed[0] == '{' && strstr(printed, "\"solid\": true"));
+    run("check open.stl --json open.json", 3, "open.stl is not a solid");
+    CHECK(strstr(printed, "3 edges are open") && access("open.json", F_OK) == 0);
+    run("check open.stl --json open.json", 2, "--force-overwrite");
+    run("check two.pbm", 4, "neither STL nor 3MF");
+    run("check missing.stl", 1, "No such file");
+    run("check solid.stl -o a.png", 2, "not an option of jali check");
+}
+
 TEST(earlier_output_stays_untouched)
 {
     char kept[TEXT_BYTES];
@@ -239,6 +269,7 @@ int main(void)
         cmocka_unit_test(usage_is_checked_before_anything_is_done),
         cmocka_unit_test(numbers_are_numbers_in_their_range),
         cmocka_unit_test(bad_pictures_are_rejected),
+        cmocka_unit_test(models_are_checked),
         cmocka_unit_test(earlier_output_stays_untouched),
         cmocka_unit_test(a_full_disk_is_a_sentence),
         cmocka_unit_test(an_unwritable_folder_is_a_sentence),
