@@ -11,12 +11,12 @@
 enum { MOST_OUTPUTS = 8 };
 
 typedef enum exit_code {
-    EXIT_DONE = 0,        // done, every promise kept
-    EXIT_FAILED = 1,      // the system or a question without an answer
-    EXIT_USAGE = 2,       // the command line itself
-    EXIT_BROKEN = 3,      // done, but a promise is not kept; it is said which
-    EXIT_REJECTED = 4,    // the input is no good
-    EXIT_LIMIT = 5,       // a limit on memory or time was reached
+    EXIT_DONE = 0,     // done, every promise kept
+    EXIT_FAILED = 1,   // the system or a question without an answer
+    EXIT_USAGE = 2,    // the command line itself
+    EXIT_BROKEN = 3,   // done, but a promise is not kept; it is said which
+    EXIT_REJECTED = 4, // the input is no good
+    EXIT_LIMIT = 5,    // a limit on memory or time was reached
     EXIT_INTERRUPTED = 130
 } exit_code;
 
@@ -24,29 +24,29 @@ typedef enum progress_kind { PROGRESS_AUTO, PROGRESS_PLAIN, PROGRESS_NONE } prog
 
 /// Everything the options can say, as the structs of the stages. One struct serves all verbs.
 typedef struct settings {
-    const char *operand;               // PICTURE, MODEL, NAME or KIND
+    const char *operand; // PICTURE, MODEL, NAME or KIND
     const char *output[MOST_OUTPUTS];
     int32_t output_count;
     const char *json, *report;
     jali_read_options read;
     jali_threshold_options threshold;
     jali_place_options place;
-    int32_t size_px;                   // of a sample
-    bool skip_intersections;           // of check
+    int32_t size_px;         // of a sample
+    bool skip_intersections; // of check
     jali_context_options context;
     double max_memory_mb;
-    int32_t progress;                  // progress_kind
+    int32_t progress; // progress_kind
     bool quiet, force_overwrite, help;
 } settings;
 
 /// Which options a verb takes; an option belongs to one group.
 typedef enum option_group {
-    GROUP_PICTURE = 1,  // reading and thresholding
-    GROUP_SIZE = 2,     // size on the surface, printer
-    GROUP_FILES = 4,    // -o
+    GROUP_PICTURE = 1, // reading and thresholding
+    GROUP_SIZE = 2,    // size on the surface, printer
+    GROUP_FILES = 4,   // -o
     GROUP_SAMPLE = 8,
     GROUP_CHECK = 16,
-    GROUP_RUN = 32,     // every verb
+    GROUP_RUN = 32, // every verb
     GROUP_JSON = 64,
     GROUP_REPORT = 128,
     GROUP_OVERWRITE = 256,
@@ -54,10 +54,10 @@ typedef enum option_group {
 
 typedef struct verb {
     const char *name;
-    const char *operand;     // how the operand is called; NULL = none
-    const char *what;        // one line
-    uint32_t groups;         // of options it takes
-    const char *suffixes;    // of output files, such as ".png"; "" = none
+    const char *operand;  // how the operand is called; NULL = none
+    const char *what;     // one line
+    uint32_t groups;      // of options it takes
+    const char *suffixes; // of output files, such as ".png"; "" = none
     jali_status (*run)(jali_context *ctx, const settings *set);
 } verb;
 
@@ -75,8 +75,8 @@ jali_status load_picture(jali_context *ctx, const settings *set, jali_picture *p
 bool looks_like_svg(const uint8_t *bytes, size_t size);
 /// Draw an SVG in grey on white, as the bytes of a PGM file.
 ///   in     longer_px   of the longer side
-jali_status draw_svg(jali_context *ctx, const uint8_t *bytes, size_t size, const char *name, int32_t longer_px,
-                     jali_bytes *pgm);
+jali_status draw_svg(jali_context *ctx, const uint8_t *bytes, size_t size, const char *name,
+                     int32_t longer_px, jali_bytes *pgm);
 #endif
 
 /// Words for people, on stderr, unless --quiet.

@@ -11,7 +11,8 @@ static const verb verbs[] = {
      GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
     {"place", "PICTURE", "put a picture on the printer's working grid, nothing else changed",
      GROUP_PICTURE | GROUP_SIZE | GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN, ".png", run_place},
-    {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN, ".png", run_sample},
+    {"sample", "NAME", "draw one of the built-in pictures",
+     GROUP_SAMPLE | GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN, ".png", run_sample},
     {"list", "KIND", "list what is built in: samples", GROUP_RUN, "", run_list},
 };
 
@@ -60,8 +61,9 @@ static int unknown_verb(const char *typed)
     char sentence[SENTENCE_BYTES];
     for (int32_t i = 0; i < VERB_COUNT; i++) names[i] = verbs[i].name;
     const char *near = nearest_name(typed, names, VERB_COUNT);
-    snprintf(sentence, sizeof sentence, near ? "there is no \"jali %.40s\"; did you mean \"jali %s\"?"
-                                             : "there is no \"jali %.40s\"; \"jali --help\" lists what there is",
+    snprintf(sentence, sizeof sentence,
+             near ? "there is no \"jali %.40s\"; did you mean \"jali %s\"?"
+                  : "there is no \"jali %.40s\"; \"jali --help\" lists what there is",
              typed, near);
     return refuse(sentence);
 }
@@ -71,7 +73,8 @@ int main(int argc, char **argv)
     char sentence[SENTENCE_BYTES];
     settings set = default_settings();
     if (argc < 2) return refuse("what shall be done? \"jali --help\" lists what there is");
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) return print_help();
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0)
+        return print_help();
     if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         printf("jali %s\n", jali_version());
         return EXIT_DONE;

@@ -1,7 +1,7 @@
 // A table of options and what reads it: `--name value`, `--name=value`, `-o value`, flags.
 //
-// Numbers are finite, inside the range of their option, and may carry its unit (12mm). The table's `offset` says
-// which field of the settings an option fills.
+// Numbers are finite, inside the range of their option, and may carry its unit (12mm). The table's `offset`
+// says which field of the settings an option fills.
 #include "options.h"
 
 #include <errno.h>
@@ -18,15 +18,18 @@ typedef struct option {
     option_group group;
     size_t offset;
     double least, most;
-    const char *unit;         // may follow the number
+    const char *unit; // may follow the number
     const char *help;
 } option;
 
 #define FIELD(field) offsetof(settings, field)
 
+// clang-format off
 static const option options[] = {
-    {"output", "FILE", OUTPUT, GROUP_FILES, 0, 0, 0, 0, "write this file (also -o; several may be given; - is stdout)"},
-    {"force-overwrite", NULL, FLAG, GROUP_OVERWRITE, FIELD(force_overwrite), 0, 0, 0, "replace output files that exist"},
+    {"output", "FILE", OUTPUT, GROUP_FILES, 0, 0, 0, 0,
+     "write this file (also -o; several may be given; - is stdout)"},
+    {"force-overwrite", NULL, FLAG, GROUP_OVERWRITE, FIELD(force_overwrite), 0, 0, 0,
+     "replace output files that exist"},
     {"json", "FILE", TEXT, GROUP_JSON, FIELD(json), 0, 0, 0, "write the figures as JSON (- is stdout)"},
     {"report", "FILE", TEXT, GROUP_REPORT, FIELD(report), 0, 0, 0, "write a report as one HTML file"},
 
@@ -39,32 +42,41 @@ static const option options[] = {
     {"invert", NULL, FLAG, GROUP_PICTURE, FIELD(read.invert), 0, 0, 0, "swap black and white"},
     {"mirror", NULL, FLAG, GROUP_PICTURE, FIELD(read.mirror), 0, 0, 0, "swap left and right"},
     {"rotate", "0|90|180|270", ROTATE, GROUP_PICTURE, 0, 0, 270, 0, "turn clockwise (0)"},
-    {"crop", "L,T,W,H", CROP, GROUP_PICTURE, 0, 0, 0, 0, "keep this part, in pixels from the upper left corner"},
+    {"crop", "L,T,W,H", CROP, GROUP_PICTURE, 0, 0, 0, 0,
+     "keep this part, in pixels from the upper left corner"},
 
-    {"width", "MM", NUMBER, GROUP_SIZE, FIELD(place.width_mm), 0.01, 10000, "mm", "width of the picture (70)"},
+    {"width", "MM", NUMBER, GROUP_SIZE, FIELD(place.width_mm), 0.01, 10000, "mm",
+     "width of the picture (70)"},
     {"height", "MM", NUMBER, GROUP_SIZE, FIELD(place.height_mm), 0.01, 10000, "mm",
      "height of the picture; one size gives the other"},
     {"frame", "MM", NUMBER, GROUP_SIZE, FIELD(place.frame_mm), 0, 1000, "mm", "width of the solid frame (0)"},
     {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_e_mm), 0, 100, "mm",
      "how much wider a solid bar prints than drawn (0.1)"},
-    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_s_mm), 0.001, 100, "mm", "narrowest solid that prints (0.3)"},
-    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_v_mm), 0.001, 100, "mm", "narrowest void that prints (0.5)"},
+    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_s_mm), 0.001, 100, "mm",
+     "narrowest solid that prints (0.3)"},
+    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_v_mm), 0.001, 100, "mm",
+     "narrowest void that prints (0.5)"},
     {"pixel", "MM", NUMBER, GROUP_SIZE, FIELD(place.pixel_mm), 0.0001, 100, "mm",
      "working pixel (the smaller of phi-s and phi-v, over 8)"},
-    {"paper", NULL, FLAG, GROUP_SIZE, FIELD(place.paper), 0, 0, 0, "the paper's grid: one working pixel an input pixel"},
+    {"paper", NULL, FLAG, GROUP_SIZE, FIELD(place.paper), 0, 0, 0,
+     "the paper's grid: one working pixel an input pixel"},
 
     {"size", "PX", WHOLE, GROUP_SAMPLE, FIELD(size_px), 16, 32768, "px", "side of the picture (1000)"},
     {"skip-intersections", NULL, FLAG, GROUP_CHECK, FIELD(skip_intersections), 0, 0, 0,
      "leave out the one costly test"},
 
-    {"threads", "N", WHOLE, GROUP_RUN, FIELD(context.threads), 1, 1024, 0, "threads to use; never changes a result (all)"},
-    {"max-memory", "MB", NUMBER, GROUP_RUN, FIELD(max_memory_mb), 1, 1e9, "MB", "give up rather than hold more"},
-    {"timeout", "S", NUMBER, GROUP_RUN, FIELD(context.timeout_seconds), 0.001, 1e9, "s", "give up after this long"},
+    {"threads", "N", WHOLE, GROUP_RUN, FIELD(context.threads), 1, 1024, 0,
+     "threads to use; never changes a result (all)"},
+    {"max-memory", "MB", NUMBER, GROUP_RUN, FIELD(max_memory_mb), 1, 1e9, "MB",
+     "give up rather than hold more"},
+    {"timeout", "S", NUMBER, GROUP_RUN, FIELD(context.timeout_seconds), 0.001, 1e9, "s",
+     "give up after this long"},
     {"progress", "auto|plain|none", PROGRESS, GROUP_RUN, 0, 0, 0, 0,
      "show it on a terminal, as lines, or not at all (auto)"},
     {"quiet", NULL, FLAG, GROUP_RUN, FIELD(quiet), 0, 0, 0, "say nothing but errors (also -q)"},
     {"help", NULL, FLAG, GROUP_RUN, FIELD(help), 0, 0, 0, "these lines (also -h)"},
 };
+// clang-format on
 
 enum { OPTION_COUNT = sizeof options / sizeof *options };
 
@@ -126,7 +138,8 @@ const char *nearest_name(const char *typed, const char *const *name, int32_t cou
 static const option *find_option(const char *name, size_t length)
 {
     for (int32_t i = 0; i < OPTION_COUNT; i++)
-        if (strlen(options[i].name) == length && strncmp(options[i].name, name, length) == 0) return &options[i];
+        if (strlen(options[i].name) == length && strncmp(options[i].name, name, length) == 0)
+            return &options[i];
     return NULL;
 }
 
@@ -140,7 +153,8 @@ static bool unknown_option(const verb *v, const char *name, size_t length, char 
     snprintf(typed, sizeof typed, "%.*s", (int)MIN(length, sizeof typed - 1), name);
     const char *near = nearest_name(typed, names, count);
     if (near) return wrong(sentence, "there is no option --%s; did you mean --%s?", typed, near);
-    return wrong(sentence, "there is no option --%s; \"jali %s --help\" lists those there are", typed, v->name);
+    return wrong(sentence, "there is no option --%s; \"jali %s --help\" lists those there are", typed,
+                 v->name);
 }
 
 static bool parse_number(const option *o, const char *text, double *number, char *sentence)
@@ -154,8 +168,8 @@ static bool parse_number(const option *o, const char *text, double *number, char
         return wrong(sentence, "--%s takes a number in %s, not \"%.40s\"", o->name, o->unit, text);
     if (*end != 0) return wrong(sentence, "--%s takes a number, not \"%.40s\"", o->name, text);
     if (*number < o->least || *number > o->most)
-        return wrong(sentence, "--%s must be %g .. %g%s%s, not %.40s", o->name, o->least, o->most, o->unit ? " " : "",
-                     o->unit ? o->unit : "", text);
+        return wrong(sentence, "--%s must be %g .. %g%s%s, not %.40s", o->name, o->least, o->most,
+                     o->unit ? " " : "", o->unit ? o->unit : "", text);
     if (o->kind != NUMBER && *number != floor(*number))
         return wrong(sentence, "--%s takes a whole number, not %.40s", o->name, text);
     return true;
@@ -196,7 +210,8 @@ static bool parse_rotate(const option *o, const char *text, settings *set, char 
 {
     double degrees;
     if (!parse_number(o, text, &degrees, sentence)) return false;
-    if ((int32_t)degrees % 90 != 0) return wrong(sentence, "--rotate takes 0, 90, 180 or 270, not %.40s", text);
+    if ((int32_t)degrees % 90 != 0)
+        return wrong(sentence, "--rotate takes 0, 90, 180 or 270, not %.40s", text);
     set->read.quarter_turns = (int32_t)degrees / 90;
     return true;
 }
@@ -214,7 +229,8 @@ static bool parse_progress(const char *text, settings *set, char *sentence)
 
 static bool add_output(const char *text, settings *set, char *sentence)
 {
-    if (set->output_count == MOST_OUTPUTS) return wrong(sentence, "at most %d output files can be given", MOST_OUTPUTS);
+    if (set->output_count == MOST_OUTPUTS)
+        return wrong(sentence, "at most %d output files can be given", MOST_OUTPUTS);
     set->output[set->output_count++] = text;
     return true;
 }
@@ -250,7 +266,10 @@ static bool parse_one(const verb *v, int argc, char **argv, int *i, settings *se
     if (argv[*i][1] != '-') { // the few short ones
         if (argv[*i][1] == 0 || argv[*i][2] != 0)
             return wrong(sentence, "there is no option %.40s", argv[*i]);
-        word = argv[*i][1] == 'o' ? "output" : argv[*i][1] == 'q' ? "quiet" : argv[*i][1] == 'h' ? "help" : argv[*i] + 1;
+        word = argv[*i][1] == 'o'   ? "output"
+               : argv[*i][1] == 'q' ? "quiet"
+               : argv[*i][1] == 'h' ? "help"
+                                    : argv[*i] + 1;
     }
     const char *equals = strchr(word, '=');
     size_t length = equals ? (size_t)(equals - word) : strlen(word);
@@ -269,8 +288,8 @@ static bool set_operand(const verb *v, const char *text, settings *set, char *se
 {
     if (!v->operand) return wrong(sentence, "jali %s takes no \"%.60s\"", v->name, text);
     if (set->operand)
-        return wrong(sentence, "jali %s takes one %s; there are two, \"%.60s\" and \"%.60s\"", v->name, v->operand,
-                     set->operand, text);
+        return wrong(sentence, "jali %s takes one %s; there are two, \"%.60s\" and \"%.60s\"", v->name,
+                     v->operand, set->operand, text);
     set->operand = text;
     return true;
 }
@@ -290,7 +309,8 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
     if (v->operand && !set->operand) return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
     if (*v->suffixes && set->output_count == 0)
         return wrong(sentence, "jali %s needs an output file: -o NAME%s", v->name, v->suffixes);
-    if (set->place.width_mm == 0 && set->place.height_mm == 0) set->place.width_mm = jali_place_defaults().width_mm;
+    if (set->place.width_mm == 0 && set->place.height_mm == 0)
+        set->place.width_mm = jali_place_defaults().width_mm;
     set->context.max_memory_bytes = (uint64_t)(set->max_memory_mb * 1e6);
     return true;
 }

@@ -32,7 +32,8 @@ static bool same_file(const char *a, const char *b)
 {
     struct stat one, other;
     if (strcmp(a, b) == 0) return true;
-    return stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+    return stat(a, &one) == 0 && stat(b, &other) == 0 && one.st_dev == other.st_dev &&
+           one.st_ino == other.st_ino;
 }
 
 static bool check_output(const verb *v, const settings *set, const char *path, char *sentence)
@@ -40,8 +41,8 @@ static bool check_output(const verb *v, const settings *set, const char *path, c
     struct stat old;
     bool standard = strcmp(path, "-") == 0;
     if (!standard && !knows_suffix(v, suffix_of(v, path)))
-        snprintf(sentence, SENTENCE_BYTES, "%s: jali %s does not write this type; it writes %s", path, v->name,
-                 v->suffixes);
+        snprintf(sentence, SENTENCE_BYTES, "%s: jali %s does not write this type; it writes %s", path,
+                 v->name, v->suffixes);
     else if (standard && isatty(STDOUT_FILENO))
         snprintf(sentence, SENTENCE_BYTES, "stdout is a terminal; send it to a file or a program");
     else if (!standard && set->operand && same_file(path, set->operand))
@@ -74,7 +75,8 @@ bool check_outputs(const verb *v, const settings *set, char *sentence)
         if (!check_output(v, set, set->output[i], sentence)) return false;
         path[count++] = set->output[i];
     }
-    if (!check_text_output(set, set->json, sentence) || !check_text_output(set, set->report, sentence)) return false;
+    if (!check_text_output(set, set->json, sentence) || !check_text_output(set, set->report, sentence))
+        return false;
     if (set->json) path[count++] = set->json;
     if (set->report) path[count++] = set->report;
     for (int32_t i = 0; i < count; i++)
@@ -91,7 +93,8 @@ jali_status write_outputs(jali_context *ctx, const output *out, int32_t count)
     jali_status status = JALI_OK;
     output_file file[MOST_OUTPUTS + 2] = {0};
     for (int32_t i = 0; i < count; i++) TRY(output_open(ctx, out[i].path, &file[i]));
-    for (int32_t i = 0; i < count; i++) TRY(output_write(ctx, &file[i], out[i].bytes->data, out[i].bytes->size));
+    for (int32_t i = 0; i < count; i++)
+        TRY(output_write(ctx, &file[i], out[i].bytes->data, out[i].bytes->size));
     for (int32_t i = 0; i < count; i++) TRY(output_commit(ctx, &file[i]));
 done:
     for (int32_t i = 0; i < count; i++) output_abandon(ctx, &file[i]);

@@ -4,7 +4,7 @@
 
 #include "cli.h"
 
-/// Suffixes the verb knows, no file named twice, none that exists (unless --force-overwrite), none that is the input.
+/// Suffixes the verb knows, no file named twice, none that exists (unless --force-overwrite), none the input.
 ///   out    sentence  what is wrong, when false comes back
 bool check_outputs(const verb *v, const settings *set, char *sentence);
 

@@ -61,8 +61,8 @@ jali_status run_place(jali_context *ctx, const settings *set)
     TRY(load_picture(ctx, set, &picture, &threshold));
     TRY(jali_place(ctx, &picture, threshold, &set->place, &chart, &drawing));
     TRY(write_bitmaps(ctx, set, &drawing, jali_chart_pixel_mm(&chart)));
-    say(set, "%d x %d px at threshold %d, on a grid of %d x %d px of %.4g mm", picture.width_px, picture.height_px,
-        threshold, chart.width_px, chart.height_px, jali_chart_pixel_mm(&chart));
+    say(set, "%d x %d px at threshold %d, on a grid of %d x %d px of %.4g mm", picture.width_px,
+        picture.height_px, threshold, chart.width_px, chart.height_px, jali_chart_pixel_mm(&chart));
 done:
     jali_bitmap_free(ctx, &drawing);
     jali_picture_free(ctx, &picture);

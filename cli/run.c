@@ -11,7 +11,7 @@ static jali_context *volatile running;
 
 typedef struct progress_line {
     bool on_terminal, plain;
-    char stage[32];   // the one shown last
+    char stage[32]; // the one shown last
     int percent;
 } progress_line;
 

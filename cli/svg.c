@@ -1,7 +1,7 @@
 // SVG pictures through librsvg, in the command line only: the library stays free of GLib.
 //
-// The document is drawn on white, its size and shape from its own width, height or viewBox. Nothing is loaded from
-// outside: the document has no base address.
+// The document is drawn on white, its size and shape from its own width, height or viewBox. Nothing is loaded
+// from outside: the document has no base address.
 #ifdef JALI_HAVE_RSVG
 #include "cli.h"
 #include "base/bytes.h"
@@ -33,7 +33,8 @@ static bool shape_of(RsvgHandle *svg, double size[2])
     gboolean has_width, has_height, has_box;
     RsvgLength width, height;
     RsvgRectangle box;
-    if (rsvg_handle_get_intrinsic_size_in_pixels(svg, &size[0], &size[1]) && size[0] > 0 && size[1] > 0) return true;
+    if (rsvg_handle_get_intrinsic_size_in_pixels(svg, &size[0], &size[1]) && size[0] > 0 && size[1] > 0)
+        return true;
     rsvg_handle_get_intrinsic_dimensions(svg, &has_width, &width, &has_height, &height, &has_box, &box);
     size[0] = has_box ? box.width : 0;
     size[1] = has_box ? box.height : 0;
@@ -59,13 +60,16 @@ done:
     return status;
 }
 
-static jali_status paint(jali_context *ctx, RsvgHandle *svg, const char *name, int32_t longer_px, jali_bytes *pgm)
+static jali_status paint(jali_context *ctx, RsvgHandle *svg, const char *name, int32_t longer_px,
+                         jali_bytes *pgm)
 {
     double size[2];
     GError *error = NULL;
-    if (!shape_of(svg, size)) return fail(ctx, JALI_BAD_INPUT, "%s: the SVG has neither a size nor a viewBox", name);
+    if (!shape_of(svg, size))
+        return fail(ctx, JALI_BAD_INPUT, "%s: the SVG has neither a size nor a viewBox", name);
     double scale = longer_px / MAX(size[0], size[1]);
-    int32_t width = (int32_t)MAX(floor(size[0] * scale + 0.5), 1), height = (int32_t)MAX(floor(size[1] * scale + 0.5), 1);
+    int32_t width = (int32_t)MAX(floor(size[0] * scale + 0.5), 1),
+            height = (int32_t)MAX(floor(size[1] * scale + 0.5), 1);
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     cairo_t *cairo = cairo_create(surface);
     cairo_set_source_rgb(cairo, 1, 1, 1);
@@ -73,7 +77,8 @@ static jali_status paint(jali_context *ctx, RsvgHandle *svg, const char *name, i
     RsvgRectangle viewport = {0, 0, width, height};
     jali_status status = JALI_OK;
     if (!rsvg_handle_render_document(svg, cairo, &viewport, &error))
-        status = fail(ctx, JALI_BAD_INPUT, "%s: the SVG cannot be drawn: %s", name, error ? error->message : "no reason");
+        status = fail(ctx, JALI_BAD_INPUT, "%s: the SVG cannot be drawn: %s", name,
+                      error ? error->message : "no reason");
     else if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS)
         status = fail(ctx, JALI_NO_MEMORY, "%s: no memory for an SVG of %d x %d px", name, width, height);
     cairo_surface_flush(surface);
@@ -84,8 +89,8 @@ static jali_status paint(jali_context *ctx, RsvgHandle *svg, const char *name, i
     return status;
 }
 
-jali_status draw_svg(jali_context *ctx, const uint8_t *bytes, size_t size, const char *name, int32_t longer_px,
-                     jali_bytes *pgm)
+jali_status draw_svg(jali_context *ctx, const uint8_t *bytes, size_t size, const char *name,
+                     int32_t longer_px, jali_bytes *pgm)
 {
     GError *error = NULL;
     RsvgHandle *svg = rsvg_handle_new_from_data(bytes, size, &error);

@@ -11,7 +11,10 @@
 enum { FILE_ROOM = 1 << 20 };
 
 /// A file in memory.
-typedef struct made { uint8_t bytes[FILE_ROOM]; size_t size; } made;
+typedef struct made {
+    uint8_t bytes[FILE_ROOM];
+    size_t size;
+} made;
 
 static made file; // large, so not on the stack; each test fills it anew
 
@@ -23,9 +26,16 @@ static inline void png_append(png_structp png, png_bytep data, size_t size)
     to->size += size;
 }
 
-static inline void png_flush_nothing(png_structp png) { (void)png; }
+static inline void png_flush_nothing(png_structp png)
+{
+    (void)png;
+}
 
-typedef struct png_kind { int32_t width, height; int depth, type; bool interlaced, transparent; } png_kind;
+typedef struct png_kind {
+    int32_t width, height;
+    int depth, type;
+    bool interlaced, transparent;
+} png_kind;
 
 /// Sample c of pixel (x, y): any rule will do that the tests can repeat.
 static inline uint32_t sample_at(int32_t x, int32_t y, int32_t c, int depth)
@@ -124,7 +134,8 @@ static inline double grey_of(const png_kind *k, int32_t x, int32_t y)
         bool key = k->transparent;
         int32_t colours = coloured ? 3 : 1;
         for (int32_t c = 0; c < 3; c++) rgba[c] = sample_at(x, y, coloured ? c : 0, k->depth) / top;
-        for (int32_t c = 0; c < colours; c++) key &= sample_at(x, y, c, k->depth) == sample_at(1, 1, c, k->depth);
+        for (int32_t c = 0; c < colours; c++)
+            key &= sample_at(x, y, c, k->depth) == sample_at(1, 1, c, k->depth);
         if (k->type & PNG_COLOR_MASK_ALPHA) rgba[3] = sample_at(x, y, colours, k->depth) / top;
         if (key) rgba[3] = 0;
     }
@@ -132,9 +143,10 @@ static inline double grey_of(const png_kind *k, int32_t x, int32_t y)
     return 255 * (1 - (1 - grey) * rgba[3]);
 }
 
-/// A JPEG of width x height whose left half is light and whose top quarter is dark; `channels` 1, 3 or 4 (CMYK,
-/// stored inverted as Adobe does); orientation 0 = no EXIF.
-static inline void make_jpeg(int32_t width, int32_t height, int32_t channels, bool progressive, int32_t orientation)
+/// A JPEG of width x height whose left half is light and whose top quarter is dark; `channels` 1, 3 or 4
+/// (CMYK, stored inverted as Adobe does); orientation 0 = no EXIF.
+static inline void make_jpeg(int32_t width, int32_t height, int32_t channels, bool progressive,
+                             int32_t orientation)
 {
     struct jpeg_compress_struct jpeg;
     struct jpeg_error_mgr errors;
@@ -154,8 +166,9 @@ static inline void make_jpeg(int32_t width, int32_t height, int32_t channels, bo
     if (progressive) jpeg_simple_progression(&jpeg);
     jpeg_start_compress(&jpeg, TRUE);
     if (orientation) {
-        uint8_t exif[] = {'E', 'x', 'i', 'f', 0, 0, 'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1,
-                          1, 0x12, 0, 3, 0, 0, 0, 1, 0, (uint8_t)orientation, 0, 0, 0, 0, 0, 0};
+        uint8_t exif[] = {'E', 'x', 'i', 'f', 0,    0, 'M', 'M', 0, 42, 0, 0, 0,
+                          8,   0,   1,   1,   0x12, 0, 3,   0,   0, 0,  1, 0, (uint8_t)orientation,
+                          0,   0,   0,   0,   0,    0};
         jpeg_write_marker(&jpeg, JPEG_APP0 + 1, exif, sizeof exif);
     }
     for (int32_t y = 0; y < height; y++) {

@@ -13,7 +13,7 @@
 enum { TEXT_BYTES = 8192 };
 
 static char folder[] = "/tmp/jali-test-XXXXXX";
-static char said[TEXT_BYTES];   // stderr of the last run
+static char said[TEXT_BYTES];    // stderr of the last run
 static char printed[TEXT_BYTES]; // its stdout
 
 static void read_text(const char *name, char text[TEXT_BYTES])
@@ -162,8 +162,9 @@ TEST(bad_pictures_are_rejected)
 // A tetrahedron as text, without its last face when it shall be open.
 static void write_tetrahedron(const char *name, bool closed)
 {
-    static const char *const face[] = {"0 0 0\nvertex 0 1 0\nvertex 1 0 0", "0 0 0\nvertex 1 0 0\nvertex 0 0 1",
-                                       "0 0 0\nvertex 0 0 1\nvertex 0 1 0", "1 0 0\nvertex 0 1 0\nvertex 0 0 1"};
+    static const char *const face[] = {
+        "0 0 0\nvertex 0 1 0\nvertex 1 0 0", "0 0 0\nvertex 1 0 0\nvertex 0 0 1",
+        "0 0 0\nvertex 0 0 1\nvertex 0 1 0", "1 0 0\nvertex 0 1 0\nvertex 0 0 1"};
     FILE *stl = fopen(name, "wb");
     CHECK(stl != NULL);
     fprintf(stl, "solid t\n");
@@ -197,8 +198,10 @@ TEST(earlier_output_stays_untouched)
     run("place missing.png -o old.png --force-overwrite", 1, "No such file");
     run("place two.pbm -o two.pbm.png -o nowhere/b.png", 1, "nowhere/b.png");
     CHECK(access("two.pbm.png", F_OK) != 0); // all of them or none
-    run("place two.pbm -o old.png --force-overwrite --timeout 0.001 --width 3000 --pixel 0.05", 5, "time limit");
-    run("place two.pbm -o old.png --force-overwrite --max-memory 1 --width 2000 --pixel 0.1", 5, "memory limit");
+    run("place two.pbm -o old.png --force-overwrite --timeout 0.001 --width 3000 --pixel 0.05", 5,
+        "time limit");
+    run("place two.pbm -o old.png --force-overwrite --max-memory 1 --width 2000 --pixel 0.1", 5,
+        "memory limit");
     read_text("old.png", kept);
     assert_string_equal(kept, "precious");
     run("sample tree -o old.png --size 64 --force-overwrite", 0, "");
@@ -225,7 +228,8 @@ TEST(an_unwritable_folder_is_a_sentence)
 
 TEST(pipes_carry_pictures)
 {
-    int code = finish(start("sample rings -o - --size 64 | $JALI_PROGRAM place - -o - --width 20 --pixel 0.1 --quiet"));
+    int code = finish(
+        start("sample rings -o - --size 64 | $JALI_PROGRAM place - -o - --width 20 --pixel 0.1 --quiet"));
     CHECK_INT(code, 0);
     CHECK(memcmp(printed, "\x89PNG", 4) == 0 && *said == 0);
 }

@@ -1,4 +1,5 @@
-// The picture readers: every type against a formula in floating point; every prefix, bombs, refusals; thresholds.
+// The picture readers: every type against a formula in floating point; every prefix, bombs, refusals;
+// thresholds.
 #include "pictures.h"
 #include "base/file.h"
 
@@ -26,8 +27,8 @@ static void check_kind(const png_kind *k)
     for (int32_t y = 0; y < k->height; y++)
         for (int32_t x = 0; x < k->width; x++)
             if (fabs(grey_at(x, y) - grey_of(k, x, y)) > 1.01) {
-                print_error("depth %d type %d interlaced %d transparent %d (%d, %d): %d, not %g\n", k->depth, k->type,
-                            k->interlaced, k->transparent, x, y, grey_at(x, y), grey_of(k, x, y));
+                print_error("depth %d type %d interlaced %d transparent %d (%d, %d): %d, not %g\n", k->depth,
+                            k->type, k->interlaced, k->transparent, x, y, grey_at(x, y), grey_of(k, x, y));
                 CHECK(false);
             }
     jali_picture_free(ctx, &picture);
@@ -82,7 +83,8 @@ static void check_every_byte_changed(void)
 
 TEST(prefixes_and_changed_bytes_of_png)
 {
-    png_kind kinds[] = {{13, 9, 1, PNG_COLOR_TYPE_GRAY, false, true}, {13, 9, 4, PNG_COLOR_TYPE_PALETTE, true, true},
+    png_kind kinds[] = {{13, 9, 1, PNG_COLOR_TYPE_GRAY, false, true},
+                        {13, 9, 4, PNG_COLOR_TYPE_PALETTE, true, true},
                         {9, 9, 16, PNG_COLOR_TYPE_RGBA, true, false}};
     for (int32_t i = 0; i < 3; i++) {
         make_png(&kinds[i]);
@@ -207,9 +209,11 @@ TEST(pnm_plain_and_raw)
 
 TEST(pnm_refusals)
 {
-    static const char *const bad[] = {"P1 2 2 10 1", "P1 2 2 1012", "P2 1 1 255", "P2 1 1 255 256 ", "P2 1 1 0 0 ",
-                                      "P2 1 1 65536 0 ", "P5 2 2 255 abc", "P5 x 2 255 ab", "P5 -1 2 255 ab",
-                                      "P4 0 3 ", "P6 1 1 255x", "P5 1 1", "P2 999999999999 1 3 1 "};
+    static const char *const bad[] = {
+        "P1 2 2 10 1",           "P1 2 2 1012",     "P2 1 1 255",     "P2 1 1 255 256 ",
+        "P2 1 1 0 0 ",           "P2 1 1 65536 0 ", "P5 2 2 255 abc", "P5 x 2 255 ab",
+        "P5 -1 2 255 ab",        "P4 0 3 ",         "P6 1 1 255x",    "P5 1 1",
+        "P2 999999999999 1 3 1 "};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         make_text(bad[i], strlen(bad[i]));
         if (read_made(ctx) != JALI_BAD_INPUT) print_error("%s\n", bad[i]);
@@ -324,11 +328,13 @@ TEST(local_threshold_follows_the_light)
     for (int32_t method = 0; method < 2; method++) {
         jali_picture p = greys(SIDE, SIDE);
         for (int32_t y = 0; y < SIDE; y++)
-            for (int32_t x = 0; x < SIDE; x++) p.grey[y * SIDE + x] = (uint8_t)((x % 20 < 4 ? 40 : 90) * (1 + x / 200.0));
+            for (int32_t x = 0; x < SIDE; x++)
+                p.grey[y * SIDE + x] = (uint8_t)((x % 20 < 4 ? 40 : 90) * (1 + x / 200.0));
         jali_threshold_options opt = jali_threshold_defaults();
         if (method) opt.method = JALI_THRESHOLD_LOCAL;
         CHECK_OK(jali_threshold(ctx, &p, &opt, &threshold));
-        for (int32_t i = 0; i < SIDE * SIDE; i++) wrong[method] += (p.grey[i] >= threshold) != (i % SIDE % 20 >= 4);
+        for (int32_t i = 0; i < SIDE * SIDE; i++)
+            wrong[method] += (p.grey[i] >= threshold) != (i % SIDE % 20 >= 4);
         jali_picture_free(ctx, &p);
     }
     CHECK(wrong[0] > 3000 && wrong[1] == 0);
@@ -341,7 +347,8 @@ TEST(local_threshold_is_its_definition)
     int32_t threshold;
     uint64_t seed = 5;
     jali_picture p = greys(WIDTH, HEIGHT), source = greys(WIDTH, HEIGHT);
-    for (int32_t i = 0; i < WIDTH * HEIGHT; i++) p.grey[i] = source.grey[i] = (uint8_t)(next_random(&seed) >> 56);
+    for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
+        p.grey[i] = source.grey[i] = (uint8_t)(next_random(&seed) >> 56);
     jali_threshold_options opt = {JALI_THRESHOLD_LOCAL, 0, 2 * RADIUS + 1, 0.3};
     CHECK_OK(jali_threshold(ctx, &p, &opt, &threshold));
     for (int32_t y = 0; y < HEIGHT; y += 3)
@@ -352,7 +359,8 @@ TEST(local_threshold_is_its_definition)
                     double grey = source.grey[v * WIDTH + u];
                     count++, sum += grey, square += grey * grey;
                 }
-            double mean = sum / count, level = mean * (1 + 0.3 * (sqrt(square / count - mean * mean) / 128 - 1));
+            double mean = sum / count,
+                   level = mean * (1 + 0.3 * (sqrt(square / count - mean * mean) / 128 - 1));
             double distance = floor(128 + source.grey[y * WIDTH + x] - level);
             CHECK(fabs(p.grey[y * WIDTH + x] - MIN(MAX(distance, 0), 255)) <= 1);
         }

@@ -60,17 +60,15 @@ static uint64_t hash_of(const jali_bitmap *bitmap)
 }
 
 // A change of a picture changes README, benches and figures: it is meant to be noticed here.
-static const struct { const char *name; uint64_t hash; } golden[] = {
-    {"girih", UINT64_C(0x1b35cade7a6066d2)},
-    {"tree", UINT64_C(0x027b12f72ac56111)},
-    {"mask", UINT64_C(0x4981e17048b22838)},
-    {"lettering", UINT64_C(0xc3203beae9c073c0)},
-    {"sunflower", UINT64_C(0x7ad1076971bebd2e)},
-    {"spiral", UINT64_C(0x80450b88e6a22351)},
-    {"rings", UINT64_C(0x45e7748f420ee3f5)},
-    {"halftone", UINT64_C(0x2554c39a71c9dca8)},
-    {"stripes", UINT64_C(0xae91e1e981f3449d)},
-    {"checkerboard", UINT64_C(0xc759c4d67c60c225)},
+static const struct {
+    const char *name;
+    uint64_t hash;
+} golden[] = {
+    {"girih", UINT64_C(0x1b35cade7a6066d2)},     {"tree", UINT64_C(0x027b12f72ac56111)},
+    {"mask", UINT64_C(0x4981e17048b22838)},      {"lettering", UINT64_C(0xc3203beae9c073c0)},
+    {"sunflower", UINT64_C(0x7ad1076971bebd2e)}, {"spiral", UINT64_C(0x80450b88e6a22351)},
+    {"rings", UINT64_C(0x45e7748f420ee3f5)},     {"halftone", UINT64_C(0x2554c39a71c9dca8)},
+    {"stripes", UINT64_C(0xae91e1e981f3449d)},   {"checkerboard", UINT64_C(0xc759c4d67c60c225)},
 };
 
 TEST(samples_are_the_same_on_any_number_of_threads)
@@ -88,7 +86,8 @@ TEST(samples_are_the_same_on_any_number_of_threads)
             CHECK_INT(jali_sample(own, info[i].name, 300, &bitmap), JALI_OK);
             assert_string_equal(info[i].name, golden[i].name);
             if (hash_of(&bitmap) != golden[i].hash)
-                print_error("    {\"%s\", UINT64_C(0x%016llx)},\n", info[i].name, (unsigned long long)hash_of(&bitmap));
+                print_error("    {\"%s\", UINT64_C(0x%016llx)},\n", info[i].name,
+                            (unsigned long long)hash_of(&bitmap));
             CHECK(hash_of(&bitmap) == golden[i].hash);
             jali_bitmap_free(own, &bitmap);
         }

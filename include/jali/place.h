@@ -11,13 +11,13 @@ extern "C" {
 #endif
 
 typedef struct jali_place_options {
-    double width_mm, height_mm;  // size of the picture; 0 = from the other one by the picture's shape. Both may
-                                 // be given when they agree with it to 1 %. At least one is needed
-    double pixel_mm;             // working pixel; 0 (default) = the smaller of phi_s and phi_v, over 8
-    double phi_e_mm;             // what the printer adds to a solid edge's two sides together, >= 0 (0.1)
-    double phi_s_mm, phi_v_mm;   // narrowest solid and narrowest void that print, > 0 (0.3, 0.5)
-    double frame_mm;             // width of the solid frame, >= 0; 0 = the picture's border is the plate's
-    bool paper;                  // the paper's own grid: one working pixel an input pixel, no resampling
+    double width_mm, height_mm; // size of the picture; 0 = from the other one by the picture's shape. Both
+                                // may be given when they agree with it to 1 %. At least one is needed
+    double pixel_mm;           // working pixel; 0 (default) = the smaller of phi_s and phi_v, over 8
+    double phi_e_mm;           // what the printer adds to a solid edge's two sides together, >= 0 (0.1)
+    double phi_s_mm, phi_v_mm; // narrowest solid and narrowest void that print, > 0 (0.3, 0.5)
+    double frame_mm;           // width of the solid frame, >= 0; 0 = the picture's border is the plate's
+    bool paper;                // the paper's own grid: one working pixel an input pixel, no resampling
 } jali_place_options;
 
 /// Width 70 mm, phi 0.1 / 0.3 / 0.5 mm, no frame.
@@ -36,9 +36,10 @@ JALI_API jali_place_options jali_place_defaults(void);
 JALI_API jali_status jali_place(jali_context *ctx, const jali_picture *picture, int32_t threshold,
                                 const jali_place_options *opt, jali_chart *chart, jali_bitmap *drawing);
 
-/// The input column under column x of the working grid split `per_px` times finer (1 = the grid itself), or -1
-/// in the margin. Rows likewise, with the heights.
-static inline int32_t jali_input_column(const jali_chart *chart, int32_t input_width_px, int32_t x, int32_t per_px)
+/// The input column under column x of the working grid split `per_px` times finer (1 = the grid itself), or
+/// -1 in the margin. Rows likewise, with the heights.
+static inline int32_t jali_input_column(const jali_chart *chart, int32_t input_width_px, int32_t x,
+                                        int32_t per_px)
 {
     int64_t columns = chart->width_px - 2 * chart->margin_px;
     int64_t twice = 2 * ((int64_t)x - (int64_t)chart->margin_px * per_px) + 1;
@@ -46,7 +47,8 @@ static inline int32_t jali_input_column(const jali_chart *chart, int32_t input_w
     return (int32_t)(twice * input_width_px / (2 * columns * per_px));
 }
 
-static inline int32_t jali_input_row(const jali_chart *chart, int32_t input_height_px, int32_t y, int32_t per_px)
+static inline int32_t jali_input_row(const jali_chart *chart, int32_t input_height_px, int32_t y,
+                                     int32_t per_px)
 {
     int64_t rows = chart->height_px - 2 * chart->margin_px;
     int64_t twice = 2 * ((int64_t)y - (int64_t)chart->margin_px * per_px) + 1;

@@ -11,25 +11,25 @@ extern "C" {
 /// Grey levels, 0 = black .. 255 = white. {0} is valid and empty. Row 0 is the top row.
 typedef struct jali_picture {
     int32_t width_px, height_px;
-    uint8_t *grey;  // [height_px * width_px]
+    uint8_t *grey; // [height_px * width_px]
 } jali_picture;
 
 JALI_API void jali_picture_free(jali_context *ctx, jali_picture *picture);
 
 /// What is done to a picture on its way in, in this order: crop, turn, mirror, invert.
 typedef struct jali_read_options {
-    uint64_t max_px;        // refuse more pixels than this, 1 .. 2^29 (default); sides end at 65,500 px
-    int32_t crop_px[4];     // left, top, width, height of the part to keep; all 0 (default) = everything
-    int32_t quarter_turns;  // clockwise, 0 (default) .. 3
-    bool mirror;            // swap left and right
-    bool invert;            // swap black and white
+    uint64_t max_px;       // refuse more pixels than this, 1 .. 2^29 (default); sides end at 65,500 px
+    int32_t crop_px[4];    // left, top, width, height of the part to keep; all 0 (default) = everything
+    int32_t quarter_turns; // clockwise, 0 (default) .. 3
+    bool mirror;           // swap left and right
+    bool invert;           // swap black and white
 } jali_read_options;
 
 JALI_API jali_read_options jali_read_defaults(void);
 
 /// Read a picture file: PNG of every depth and type, JPEG (EXIF orientation respected), WebP, PBM, PGM, PPM
-/// (P1 to P6). The type is told by the first bytes. Colour becomes grey by the Rec. 709 weights, alpha is laid
-/// over white, 16 bits are rounded to 8.
+/// (P1 to P6). The type is told by the first bytes. Colour becomes grey by the Rec. 709 weights, alpha is
+/// laid over white, 16 bits are rounded to 8.
 ///   in     path     "-" is the standard input
 ///          opt      NULL means the defaults
 ///   out    picture  free with jali_picture_free
@@ -51,9 +51,9 @@ typedef enum jali_threshold_method {
 
 typedef struct jali_threshold_options {
     jali_threshold_method method;
-    int32_t level;      // FIXED: 0 .. 255, white is grey >= level; more = darker picture. Default 128
-    int32_t window_px;  // LOCAL: side of the neighbourhood, 3 .. 4,001; 0 (default) = 1/16 of the shorter side
-    double contrast;    // LOCAL: 0 .. 1, default 0.2; more = only strong edges count, flat parts stay white
+    int32_t level;     // FIXED: 0 .. 255, white is grey >= level; more = darker picture. Default 128
+    int32_t window_px; // LOCAL: side of the neighbourhood, 3 .. 4,001; 0 (default) = 1/16 of the shorter side
+    double contrast;   // LOCAL: 0 .. 1, default 0.2; more = only strong edges count, flat parts stay white
 } jali_threshold_options;
 
 JALI_API jali_threshold_options jali_threshold_defaults(void);
@@ -66,8 +66,8 @@ JALI_API jali_threshold_options jali_threshold_defaults(void);
 ///   fails  JALI_BAD_INPUT (all of one tone; the message says which levels would not be), JALI_BAD_VALUE,
 ///          JALI_NO_MEMORY, JALI_LIMIT
 ///   cost   O(pixels); LOCAL needs a second byte a pixel
-JALI_API jali_status jali_threshold(jali_context *ctx, jali_picture *picture, const jali_threshold_options *opt,
-                                    int32_t *threshold);
+JALI_API jali_status jali_threshold(jali_context *ctx, jali_picture *picture,
+                                    const jali_threshold_options *opt, int32_t *threshold);
 
 #ifdef __cplusplus
 }

@@ -10,7 +10,7 @@ extern "C" {
 
 typedef struct jali_sample_info {
     const char *name;
-    const char *what;  // one line
+    const char *what; // one line
 } jali_sample_info;
 
 /// The samples, in the order to show them; their number is put in `count`.

@@ -44,22 +44,25 @@ done:
 }
 
 // Both sizes in mm, from one of them or from two that agree.
-static jali_status size_on_plate(jali_context *ctx, const jali_picture *picture, const jali_place_options *opt,
-                                 double size_mm[2])
+static jali_status size_on_plate(jali_context *ctx, const jali_picture *picture,
+                                 const jali_place_options *opt, double size_mm[2])
 {
     double shape = (double)picture->height_px / picture->width_px;
     size_mm[0] = opt->width_mm > 0 ? opt->width_mm : opt->height_mm / shape;
     size_mm[1] = size_mm[0] * shape;
     if (opt->height_mm > 0 && fabs(size_mm[1] - opt->height_mm) > 0.01 * opt->height_mm)
-        return fail(ctx, JALI_BAD_VALUE,
-                    "%g x %g mm do not have the shape of the picture (%d x %d px): %g mm wide makes it %.4g mm "
-                    "high; give one of the two",
-                    opt->width_mm, opt->height_mm, picture->width_px, picture->height_px, opt->width_mm, size_mm[1]);
+        return fail(
+            ctx, JALI_BAD_VALUE,
+            "%g x %g mm do not have the shape of the picture (%d x %d px): %g mm wide makes it %.4g mm "
+            "high; give one of the two",
+            opt->width_mm, opt->height_mm, picture->width_px, picture->height_px, opt->width_mm, size_mm[1]);
     double largest_phi = MAX(opt->phi_s_mm, opt->phi_v_mm);
     if (MIN(size_mm[0], size_mm[1]) <= largest_phi)
         return fail(ctx, JALI_NO_RESULT,
-                    "a picture of %.3g x %.3g mm is not larger than the narrowest feature that prints, %g mm; make it "
-                    "larger", size_mm[0], size_mm[1], largest_phi);
+                    "a picture of %.3g x %.3g mm is not larger than the narrowest feature that prints, %g "
+                    "mm; make it "
+                    "larger",
+                    size_mm[0], size_mm[1], largest_phi);
     if (MAX(size_mm[0], size_mm[1]) > largest_mm)
         return fail(ctx, JALI_BAD_VALUE, "the picture would be %.4g x %.4g mm; at most %g mm are accepted",
                     size_mm[0], size_mm[1], largest_mm);
@@ -83,10 +86,11 @@ static jali_status check_grid(jali_context *ctx, double columns, double rows, do
 {
     double side = MAX(columns, rows), most = (double)most_px;
     if (side > MOST_SIDE_PX || columns * rows > most)
-        return fail(ctx, JALI_NO_RESULT,
-                    "a working pixel of %.3g mm makes a grid of %.0f x %.0f px; at most %d a side and %.0f in all "
-                    "are possible; make the pixel coarser (--pixel) or the picture smaller",
-                    pixel_mm, columns, rows, MOST_SIDE_PX, most);
+        return fail(
+            ctx, JALI_NO_RESULT,
+            "a working pixel of %.3g mm makes a grid of %.0f x %.0f px; at most %d a side and %.0f in all "
+            "are possible; make the pixel coarser (--pixel) or the picture smaller",
+            pixel_mm, columns, rows, MOST_SIDE_PX, most);
     return JALI_OK;
 }
 
@@ -118,13 +122,18 @@ static jali_status choose_grid(jali_context *ctx, const jali_picture *picture, c
     double unit_mm = finest_unit(extent_mm);
     double units = round_to_even(size_mm[0] / (columns * unit_mm));
     if (units < FEWEST_UNITS)
-        return fail(ctx, JALI_NO_RESULT,
-                    "a working pixel of %.3g mm is too fine for a plate of %.4g mm: %.3g mm or more is needed "
-                    "(--pixel)", pixel_mm, extent_mm, FEWEST_UNITS * unit_mm);
+        return fail(
+            ctx, JALI_NO_RESULT,
+            "a working pixel of %.3g mm is too fine for a plate of %.4g mm: %.3g mm or more is needed "
+            "(--pixel)",
+            pixel_mm, extent_mm, FEWEST_UNITS * unit_mm);
     *chart = (jali_chart){
-        .width_px = (int32_t)(columns + 2 * margin), .height_px = (int32_t)(rows + 2 * margin),
-        .margin_px = (int32_t)margin, .outside_solid = opt->frame_mm > 0,
-        .pixel_units = (int32_t)units, .unit_mm = unit_mm,
+        .width_px = (int32_t)(columns + 2 * margin),
+        .height_px = (int32_t)(rows + 2 * margin),
+        .margin_px = (int32_t)margin,
+        .outside_solid = opt->frame_mm > 0,
+        .pixel_units = (int32_t)units,
+        .unit_mm = unit_mm,
     };
 done:
     return status;

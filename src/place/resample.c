@@ -1,11 +1,12 @@
 // Resampling with edges between pixels, in whole numbers, so that every machine draws the same line.
 //
-// Enlarging interpolates between the four nearest input pixels: a straight edge stays exactly where it is, a line
-// of any whole width keeps it, and the corners of a two-tone input's stairs are cut. Reducing takes the exact
-// mean over the area of the working pixel. Either way the threshold comes last.
+// Enlarging interpolates between the four nearest input pixels: a straight edge stays exactly where it is, a
+// line of any whole width keeps it, and the corners of a two-tone input's stairs are cut. Reducing takes the
+// exact mean over the area of the working pixel. Either way the threshold comes last.
 //
-// A quadratic B-spline rounds the stairs a little more, but eats small things: at twice the input's resolution
-// 1.2 instead of 0.9 % of the pixels of a dense engraving change, 2.6 instead of 1.9 % of a halftone.
+// A quadratic B-spline rounds the stairs a little more, but eats small things: at twice the input's
+// resolution 1.2 instead of 0.9 % of the pixels of a dense engraving change, 2.6 instead of 1.9 % of a
+// halftone.
 //
 // Limits:  an isolated input pixel keeps 0.6 of its area when enlarged.
 // Checked: tests/test_place.c: against plain formulas, pixel by pixel; straight edges at any scale.
@@ -23,8 +24,8 @@ typedef struct resampling {
     const jali_picture *from;
     jali_bitmap *to;
     int32_t margin, columns, rows, threshold;
-    tap *column;      // [columns] enlarging only
-    void *scratch;    // [bands * scratch_bytes] one row of samples a band
+    tap *column;   // [columns] enlarging only
+    void *scratch; // [bands * scratch_bytes] one row of samples a band
     size_t scratch_bytes;
 } resampling;
 
@@ -55,8 +56,8 @@ static void put_bits(uint64_t *row, int32_t x, uint64_t bits, int32_t count)
     if (shift + count > 64) word[1] |= bits >> (64 - shift);
 }
 
-static void sample_row(const uint16_t *blended, const tap *column, int32_t columns, uint32_t limit, int32_t margin,
-                       uint64_t *row)
+static void sample_row(const uint16_t *blended, const tap *column, int32_t columns, uint32_t limit,
+                       int32_t margin, uint64_t *row)
 {
     for (int32_t x0 = 0; x0 < columns; x0 += WORD_PX) {
         int32_t count = MIN(columns - x0, WORD_PX);
@@ -86,7 +87,8 @@ static void enlarge_band(void *shared, int32_t index)
     int32_t last = MIN((index + 1) * ROWS_A_BAND, job->rows);
     for (int32_t y = index * ROWS_A_BAND; y < last; y++) {
         tap t = tap_of(y, job->rows, from->height_px);
-        const uint8_t *first = from->grey + t.first * width, *second = t.second_weight ? first + width : first;
+        const uint8_t *first = from->grey + t.first * width,
+                      *second = t.second_weight ? first + width : first;
         blend_rows(first, second, t.second_weight, (int32_t)width, blended);
         blended[width] = 0; // read with weight 0 past the last column
         sample_row(blended, job->column, job->columns, limit, job->margin, row_of(job, y));
@@ -101,7 +103,8 @@ VECTORISED static void add_weighted(const uint8_t *restrict grey, uint32_t weigh
 
 // Lengths are counted in parts of 1 / (input size x output size): an input pixel is `count` long, an output
 // pixel `size`, and every overlap is whole.
-static void reduce_row(const uint32_t *sum, int64_t size, int64_t count, uint64_t limit, int32_t margin, uint64_t *row)
+static void reduce_row(const uint32_t *sum, int64_t size, int64_t count, uint64_t limit, int32_t margin,
+                       uint64_t *row)
 {
     int64_t x = 0, left_of_x = count; // input pixel, and how much of it is not yet taken
     for (int32_t i = 0; i < count; i++) {

@@ -6,9 +6,7 @@
 VECTORISED void grey_row(const uint8_t *samples, int32_t channels, int32_t width, uint8_t *grey)
 {
     switch (channels) {
-    case 1:
-        memcpy(grey, samples, (size_t)width);
-        break;
+    case 1: memcpy(grey, samples, (size_t)width); break;
     case 2:
         for (int32_t x = 0; x < width; x++)
             grey[x] = (uint8_t)over_white(samples[2 * x], samples[2 * x + 1], 255);
@@ -31,8 +29,10 @@ jali_status crop_picture(jali_context *ctx, jali_picture *picture, const int32_t
     if (left == 0 && top == 0 && width == 0 && height == 0) return JALI_OK;
     if (left < 0 || top < 0 || width < 1 || height < 1 || left > picture->width_px - width ||
         top > picture->height_px - height)
-        return fail(ctx, JALI_BAD_VALUE, "the crop %d,%d,%d,%d (left, top, width, height) does not lie inside "
-                    "the picture of %d x %d px", left, top, width, height, picture->width_px, picture->height_px);
+        return fail(ctx, JALI_BAD_VALUE,
+                    "the crop %d,%d,%d,%d (left, top, width, height) does not lie inside "
+                    "the picture of %d x %d px",
+                    left, top, width, height, picture->width_px, picture->height_px);
     const uint8_t *from = picture->grey + (int64_t)top * picture->width_px + left;
     for (int64_t y = 0; y < height; y++)
         memmove(picture->grey + y * width, from + y * picture->width_px, (size_t)width);

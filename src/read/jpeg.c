@@ -25,8 +25,8 @@ typedef struct jpeg_job {
     const source *from;
     jali_status status;
     jali_picture *picture;
-    uint8_t *row;       // [output_width * output_components]
-    void *booked;       // what libjpeg allocates by itself
+    uint8_t *row;        // [output_width * output_components]
+    void *booked;        // what libjpeg allocates by itself
     int32_t orientation; // EXIF's, 1 .. 8
 } jpeg_job;
 
@@ -45,10 +45,11 @@ static void on_error(j_common_ptr common)
 static void on_message(j_common_ptr common, int level)
 {
     jpeg_job *job = common->client_data;
-    if (level >= 0 || (common->err->msg_code != JWRN_JPEG_EOF && common->err->msg_code != JWRN_HIT_MARKER)) return;
+    if (level >= 0 || (common->err->msg_code != JWRN_JPEG_EOF && common->err->msg_code != JWRN_HIT_MARKER))
+        return;
     if (job->status == JALI_OK)
-        job->status = fail(job->ctx, JALI_BAD_INPUT, "%s: the JPEG is truncated or corrupt: its data end early",
-                           job->from->name);
+        job->status = fail(job->ctx, JALI_BAD_INPUT,
+                           "%s: the JPEG is truncated or corrupt: its data end early", job->from->name);
     longjmp(job->leave, 1);
 }
 
@@ -63,8 +64,8 @@ static void on_progress(j_common_ptr common)
 {
     jpeg_job *job = common->client_data;
     if (job->jpeg.input_scan_number > MOST_SCANS)
-        stop_unless_ok(job, fail(job->ctx, JALI_BAD_INPUT, "%s: the JPEG has more than %d scans", job->from->name,
-                                 MOST_SCANS));
+        stop_unless_ok(job, fail(job->ctx, JALI_BAD_INPUT, "%s: the JPEG has more than %d scans",
+                                 job->from->name, MOST_SCANS));
     if (stopping(job->ctx)) stop_unless_ok(job, step(job->ctx, "read", 0));
 }
 
@@ -89,7 +90,8 @@ static int32_t exif_orientation(const uint8_t *exif, size_t size)
     at += 2;
     for (uint32_t i = 0; i < entries && size - at >= ENTRY; i++, at += ENTRY) {
         uint32_t value = exif_number(tiff + at + 8, 2, little);
-        if (exif_number(tiff + at, 2, little) == ORIENTATION && value >= 1 && value <= 8) return (int32_t)value;
+        if (exif_number(tiff + at, 2, little) == ORIENTATION && value >= 1 && value <= 8)
+            return (int32_t)value;
     }
     return 1;
 }
@@ -127,7 +129,8 @@ static void read_header(jpeg_job *job)
     jpeg_save_markers(jpeg, EXIF_MARKER, 0xffff);
     jpeg_read_header(jpeg, TRUE);
     job->orientation = find_orientation(jpeg);
-    uint64_t fewest = jpeg->arith_code ? 0 : (uint64_t)jpeg->image_width * jpeg->image_height / MOST_PX_A_BYTE;
+    uint64_t fewest =
+        jpeg->arith_code ? 0 : (uint64_t)jpeg->image_width * jpeg->image_height / MOST_PX_A_BYTE;
     stop_unless_ok(job, picture_of_size(job->ctx, job->from, jpeg->image_width, jpeg->image_height, fewest,
                                         job->picture));
     stop_unless_ok(job, book_coefficients(job));

@@ -1,8 +1,8 @@
 // PNG of every depth and type, through libpng.
 //
 // What has at most 256 levels (grey up to 8 bits, palettes) goes through a table of grey levels, transparency
-// included; the rest goes through sample arithmetic. libpng allocates from the context; its errors come back by
-// longjmp and end as a status, its warnings are not shown.
+// included; the rest goes through sample arithmetic. libpng allocates from the context; its errors come back
+// by longjmp and end as a status, its warnings are not shown.
 //
 // Limits:  deflate never packs better than 1032 : 1; a header that would need more is refused (read.h).
 // Checked: tests/test_read.c, fuzz/fuzz_png.c.
@@ -17,15 +17,15 @@ typedef struct png_job {
     jali_context *ctx;
     const source *from;
     size_t at;
-    jali_status status;    // why libpng was left; its sentence is set
+    jali_status status; // why libpng was left; its sentence is set
     png_structp png;
     png_infop info;
     jali_picture *picture;
-    uint8_t *packed;       // [row_bytes], or [height * row_bytes] when interlaced
+    uint8_t *packed; // [row_bytes], or [height * row_bytes] when interlaced
     size_t row_bytes;
     int32_t depth, channels;
     bool by_table, interlaced;
-    uint8_t level[256];    // by_table: the grey level of each sample value
+    uint8_t level[256];     // by_table: the grey level of each sample value
     uint8_t pixels[256][8]; // by_table and depth < 8: the grey levels of the pixels packed in a byte
 } png_job;
 
@@ -135,9 +135,15 @@ static void grey_of_packed_row(const png_job *job, const uint8_t *packed, int32_
 {
     int32_t count = 8 / job->depth, whole = width / count;
     switch (job->depth) { // a copy of constant size is one store
-    case 1: for (int32_t i = 0; i < whole; i++) memcpy(grey + 8 * i, job->pixels[packed[i]], 8); break;
-    case 2: for (int32_t i = 0; i < whole; i++) memcpy(grey + 4 * i, job->pixels[packed[i]], 4); break;
-    default: for (int32_t i = 0; i < whole; i++) memcpy(grey + 2 * i, job->pixels[packed[i]], 2); break;
+    case 1:
+        for (int32_t i = 0; i < whole; i++) memcpy(grey + 8 * i, job->pixels[packed[i]], 8);
+        break;
+    case 2:
+        for (int32_t i = 0; i < whole; i++) memcpy(grey + 4 * i, job->pixels[packed[i]], 4);
+        break;
+    default:
+        for (int32_t i = 0; i < whole; i++) memcpy(grey + 2 * i, job->pixels[packed[i]], 2);
+        break;
     }
     if (width % count) memcpy(grey + count * whole, job->pixels[packed[whole]], (size_t)(width % count));
 }
@@ -171,7 +177,8 @@ static void grey_of_row(const png_job *job, const uint8_t *row, int32_t width, u
 
 static void report(png_job *job, int32_t rows_done)
 {
-    if (rows_done % 256 == 0) stop_unless_ok(job, step(job->ctx, "read", (double)rows_done / job->picture->height_px));
+    if (rows_done % 256 == 0)
+        stop_unless_ok(job, step(job->ctx, "read", (double)rows_done / job->picture->height_px));
 }
 
 static void read_rows(png_job *job)
@@ -193,7 +200,8 @@ static void read_interlaced(png_job *job)
             report(job, y);
         }
     for (int32_t y = 0; y < height; y++)
-        grey_of_row(job, job->packed + (size_t)y * job->row_bytes, (int32_t)width, job->picture->grey + y * width);
+        grey_of_row(job, job->packed + (size_t)y * job->row_bytes, (int32_t)width,
+                    job->picture->grey + y * width);
 }
 
 // setjmp stands alone in its frame: nothing local changes between it and the longjmp.

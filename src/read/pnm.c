@@ -1,7 +1,7 @@
 // PBM, PGM and PPM, plain (P1, P2, P3) and raw (P4, P5, P6), any maximum up to 65,535.
 //
-// Differs: a sample above the header's maximum is an error, not a guess. Only the first picture of a file that
-//          holds several is read.
+// Differs: a sample above the header's maximum is an error, not a guess. Of a file that holds several pictures
+//          the first is read.
 // Checked: tests/test_read.c, fuzz/fuzz_pnm.c.
 #include "read/read.h"
 
@@ -9,7 +9,7 @@ typedef struct pnm {
     jali_context *ctx;
     const source *from;
     size_t at;
-    int32_t kind;              // the digit of P1 .. P6
+    int32_t kind; // the digit of P1 .. P6
     uint32_t width, height, top;
 } pnm;
 
@@ -130,8 +130,10 @@ static jali_status read_pixel(pnm *file, uint8_t *grey)
     uint32_t sample[3] = {0}, top = file->top;
     bool coloured = file->kind % 3 == 0;
     for (int32_t i = 0; i < (coloured ? 3 : 1); i++) TRY(read_sample(file, &sample[i]));
-    *grey = coloured ? to_grey(luma(widened(sample[0], top), widened(sample[1], top), widened(sample[2], top)), 65535)
-                     : to_grey(sample[0], top);
+    *grey =
+        coloured
+            ? to_grey(luma(widened(sample[0], top), widened(sample[1], top), widened(sample[2], top)), 65535)
+            : to_grey(sample[0], top);
 done:
     return status;
 }

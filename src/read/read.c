@@ -18,7 +18,7 @@ typedef struct picture_type {
     int32_t offset;
     const char *magic;
     int32_t magic_size;
-    decoder *decode;  // NULL: known, but not read
+    decoder *decode; // NULL: known, but not read
 } picture_type;
 
 #define MAGIC(text) text, sizeof(text) - 1
@@ -72,9 +72,10 @@ jali_status picture_of_size(jali_context *ctx, const source *from, uint64_t widt
                     from->name, (unsigned long long)width, (unsigned long long)height,
                     (double)from->max_px / 1e6);
     if (fewest_bytes > from->size)
-        return fail(ctx, JALI_BAD_INPUT,
-                    "%s: truncated or corrupt: the header promises %llu x %llu px, for which %zu bytes are too few",
-                    from->name, (unsigned long long)width, (unsigned long long)height, from->size);
+        return fail(
+            ctx, JALI_BAD_INPUT,
+            "%s: truncated or corrupt: the header promises %llu x %llu px, for which %zu bytes are too few",
+            from->name, (unsigned long long)width, (unsigned long long)height, from->size);
     jali_status status = ALLOCATE(ctx, picture->grey, width * height);
     if (status != JALI_OK) return status;
     picture->width_px = (int32_t)width;
@@ -133,7 +134,8 @@ done:
     return status;
 }
 
-jali_status jali_read(jali_context *ctx, const char *path, const jali_read_options *opt, jali_picture *picture)
+jali_status jali_read(jali_context *ctx, const char *path, const jali_read_options *opt,
+                      jali_picture *picture)
 {
     jali_status status;
     jali_bytes file = {0};

@@ -10,7 +10,14 @@
 
 #include <math.h>
 
-enum { LEVELS = 256, MIDDLE = 128, BAND_PX = 1 << 20, MOST_BANDS = 512, SMALLEST_WINDOW = 15, MOST_WINDOW = 4001 };
+enum {
+    LEVELS = 256,
+    MIDDLE = 128,
+    BAND_PX = 1 << 20,
+    MOST_BANDS = 512,
+    SMALLEST_WINDOW = 15,
+    MOST_WINDOW = 4001
+};
 
 typedef struct histogram {
     uint64_t count[LEVELS];
@@ -35,7 +42,7 @@ static void count_levels(const uint8_t *grey, int64_t size, histogram *h)
 
 typedef struct counting {
     const jali_picture *picture;
-    histogram *band;  // [bands]
+    histogram *band; // [bands]
     int64_t band_px;
 } counting;
 
@@ -94,7 +101,8 @@ static jali_status check_two_tones(jali_context *ctx, const histogram *h, int32_
         return fail(ctx, JALI_BAD_INPUT, "the picture is all %s: every pixel has grey level %d",
                     darkest >= MIDDLE ? "white" : "black", darkest);
     if (level > darkest && level <= lightest) return JALI_OK;
-    return fail(ctx, JALI_BAD_INPUT, "the picture is all %s at threshold %d; at %d .. %d it would show something",
+    return fail(ctx, JALI_BAD_INPUT,
+                "the picture is all %s at threshold %d; at %d .. %d it would show something",
                 level <= darkest ? "white" : "black", level, darkest + 1, lightest);
 }
 

@@ -17,9 +17,9 @@ static jali_status refused(jali_context *ctx, const source *from, VP8StatusCode 
         return fail(ctx, JALI_BAD_INPUT, "%s: the WebP is truncated: it ends after %zu bytes", from->name,
                     from->size);
     case VP8_STATUS_UNSUPPORTED_FEATURE:
-        return fail(ctx, JALI_BAD_INPUT, "%s: the WebP uses a feature that libwebp does not read", from->name);
-    default:
-        return fail(ctx, JALI_BAD_INPUT, "%s: the WebP is corrupt", from->name);
+        return fail(ctx, JALI_BAD_INPUT, "%s: the WebP uses a feature that libwebp does not read",
+                    from->name);
+    default: return fail(ctx, JALI_BAD_INPUT, "%s: the WebP is corrupt", from->name);
     }
 }
 
@@ -43,11 +43,13 @@ jali_status decode_webp(jali_context *ctx, const source *from, jali_picture *pic
     WebPDecoderConfig config;
     uint8_t *colours = NULL;
     uint32_t *booked = NULL;
-    if (!WebPInitDecoderConfig(&config)) return fail(ctx, JALI_BAD_INPUT, "%s: libwebp is another version", from->name);
+    if (!WebPInitDecoderConfig(&config))
+        return fail(ctx, JALI_BAD_INPUT, "%s: libwebp is another version", from->name);
     VP8StatusCode code = WebPGetFeatures(from->bytes, from->size, &config.input);
     if (code != VP8_STATUS_OK) return refused(ctx, from, code);
     if (config.input.has_animation)
-        return fail(ctx, JALI_BAD_INPUT, "%s: this WebP is an animation; a single picture is needed", from->name);
+        return fail(ctx, JALI_BAD_INPUT, "%s: this WebP is an animation; a single picture is needed",
+                    from->name);
     int64_t width = config.input.width, height = config.input.height;
     TRY(picture_of_size(ctx, from, (uint64_t)width, (uint64_t)height, 0, picture));
     TRY(ALLOCATE(ctx, colours, width * height * CHANNELS));

@@ -60,7 +60,8 @@ void add_point(board *b, spot p)
 
 void add_bezier(board *b, spot from, spot c1, spot c2, spot to)
 {
-    for (int32_t i = 1; i <= CURVE_PIECES; i++) add_point(b, bezier(from, c1, c2, to, (double)i / CURVE_PIECES));
+    for (int32_t i = 1; i <= CURVE_PIECES; i++)
+        add_point(b, bezier(from, c1, c2, to, (double)i / CURVE_PIECES));
 }
 
 void end_polygon(board *b)
@@ -129,8 +130,10 @@ void draw_bent_bar(board *b, tone t, spot from, spot bend, spot to, double width
     spot corner = times(plus(a, z), width / 2 / (1 + a.x * z.x + a.y * z.y));
     a = times(a, width / 2);
     z = times(z, width / 2);
-    draw_polygon(b, t, (spot[]){plus(from, a), plus(bend, corner), plus(to, z), minus(to, z), minus(bend, corner),
-                                minus(from, a)}, 6);
+    draw_polygon(b, t,
+                 (spot[]){plus(from, a), plus(bend, corner), plus(to, z), minus(to, z), minus(bend, corner),
+                          minus(from, a)},
+                 6);
 }
 
 void draw_limb(board *b, tone t, spot from, spot to, double width_from, double width_to)
@@ -164,7 +167,10 @@ void draw_leaf(board *b, tone t, spot from, spot to, double bulge, double bend)
     end_polygon(b);
 }
 
-typedef struct crossing { double x; int32_t turn; } crossing;
+typedef struct crossing {
+    double x;
+    int32_t turn;
+} crossing;
 
 typedef struct filling {
     const board *board;
@@ -205,7 +211,8 @@ static int32_t cross(const spot *p, int32_t count, double y, crossing *found)
     return crossings;
 }
 
-static void fill_shape(const board *b, const shape *s, double y, crossing *scratch, uint64_t *row, int32_t side_px)
+static void fill_shape(const board *b, const shape *s, double y, crossing *scratch, uint64_t *row,
+                       int32_t side_px)
 {
     const spot *p = &b->point[s->first];
     if (s->radius > 0) {
@@ -235,7 +242,8 @@ static void fill_band(void *shared, int32_t index)
         int32_t from = MAX(first, (int32_t)MIN(MAX(floor(s->top / step_y) - 1, 0), side_px));
         int32_t to = MIN(end, (int32_t)MIN(MAX(ceil(s->bottom / step_y) + 1, 0), side_px));
         for (int32_t y = from; y < to; y++)
-            fill_shape(b, s, (y + 0.5) * step_y, scratch, job->bitmap->word + y * job->bitmap->stride, side_px);
+            fill_shape(b, s, (y + 0.5) * step_y, scratch, job->bitmap->word + y * job->bitmap->stride,
+                       side_px);
     }
 }
 

@@ -8,14 +8,16 @@
 #include <jali/bitmap.h>
 #include "base/base.h"
 
-typedef struct spot { double x, y; } spot;
+typedef struct spot {
+    double x, y;
+} spot;
 
 typedef enum tone { BLACK, WHITE } tone;
 
 typedef struct shape {
     tone tone;
-    double radius;          // of a disc; 0 = a polygon, filled where its winding is not 0
-    int32_t first, count;   // points; a disc has one, its centre
+    double radius;        // of a disc; 0 = a polygon, filled where its winding is not 0
+    int32_t first, count; // points; a disc has one, its centre
     double top, bottom;
 } shape;
 
@@ -23,19 +25,37 @@ typedef struct shape {
 typedef struct board {
     jali_context *ctx;
     jali_status status;
-    spot *point;            // [point_count]
-    shape *shape;           // [shape_count]
+    spot *point;  // [point_count]
+    shape *shape; // [shape_count]
     size_t point_count, point_capacity, shape_count, shape_capacity;
     int32_t largest_polygon;
-    uint64_t seed;          // of next_share
+    uint64_t seed; // of next_share
 } board;
 
-static inline spot at(double x, double y) { return (spot){x, y}; }
-static inline spot plus(spot a, spot b) { return (spot){a.x + b.x, a.y + b.y}; }
-static inline spot minus(spot a, spot b) { return (spot){a.x - b.x, a.y - b.y}; }
-static inline spot times(spot a, double f) { return (spot){a.x * f, a.y * f}; }
-static inline spot between(spot a, spot b, double f) { return plus(a, times(minus(b, a), f)); }
-static inline spot mirrored(spot a) { return (spot){1000 - a.x, a.y}; }
+static inline spot at(double x, double y)
+{
+    return (spot){x, y};
+}
+static inline spot plus(spot a, spot b)
+{
+    return (spot){a.x + b.x, a.y + b.y};
+}
+static inline spot minus(spot a, spot b)
+{
+    return (spot){a.x - b.x, a.y - b.y};
+}
+static inline spot times(spot a, double f)
+{
+    return (spot){a.x * f, a.y * f};
+}
+static inline spot between(spot a, spot b, double f)
+{
+    return plus(a, times(minus(b, a), f));
+}
+static inline spot mirrored(spot a)
+{
+    return (spot){1000 - a.x, a.y};
+}
 
 /// The unit vector of an angle in turns: its y is the sine, its x the cosine.
 spot direction(double turns);

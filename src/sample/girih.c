@@ -4,11 +4,11 @@
 //
 // Source:  E. H. Hankin, The drawing of geometric patterns in Saracenic art, 1925 (polygons in contact).
 // Weave:   a strand lies over where it leaves an edge towards the next one (counter-clockwise), under where it
-//          arrives; so it alternates along every strand, across tiles too. A crossing is drawn by cutting a gap
-//          beside the strand that lies over.
+//          arrives; so it alternates along every strand, across tiles too. A crossing is drawn by cutting a
+//          gap beside the strand that lies over.
 #include "sample/samples.h"
 
-static const double spacing = 409;       // between the centres of two dodecagons
+static const double spacing = 409;                   // between the centres of two dodecagons
 static const double edge = 409 / 4.7320508075688773; // spacing = edge (3 + sqrt 3)
 static const double strap = 13.5, gap = 3.6;
 static const double contact_turns = 60.0 / 360;
@@ -16,8 +16,8 @@ static const double border = 34;
 
 typedef struct tile {
     spot centre;
-    int32_t sides, skip;   // the strand from edge i goes to edge i + skip
-    double first_turns;    // direction of the middle of edge 0
+    int32_t sides, skip; // the strand from edge i goes to edge i + skip
+    double first_turns;  // direction of the middle of edge 0
 } tile;
 
 typedef void draw_strand(board *b, const tile *t, int32_t edge_index);
@@ -62,8 +62,8 @@ static void draw_flat_strand(board *b, const tile *t, int32_t i)
     draw_bent_bar(b, WHITE, edge_middle(t, i), bend, edge_middle(t, i + t->skip), strap);
 }
 
-// The strand along `over` lies over the one along `under`: it gets a gap on both sides, as long as the other is
-// wide, and is drawn again.
+// The strand along `over` lies over the one along `under`: it gets a gap on both sides, as long as the other
+// is wide, and is drawn again.
 static void draw_crossing(board *b, spot place, spot over, spot under)
 {
     double sine = over.x * under.y - over.y * under.x, cosine = over.x * under.x + over.y * under.y;
@@ -94,14 +94,16 @@ static void draw_rosette(board *b, spot centre)
 {
     draw_star(b, WHITE, centre, 12, 0.80 * edge, 0.60 * edge, 1.0 / 24);
     for (int32_t i = 0; i < 12; i++)
-        draw_leaf(b, BLACK, polar(centre, 0.26 * edge, (i + 0.5) / 12), polar(centre, 0.64 * edge, (i + 0.5) / 12), 0.17, 0);
+        draw_leaf(b, BLACK, polar(centre, 0.26 * edge, (i + 0.5) / 12),
+                  polar(centre, 0.64 * edge, (i + 0.5) / 12), 0.17, 0);
     draw_star(b, BLACK, centre, 6, 0.2 * edge, 0.1 * edge, 1.0 / 12);
 }
 
 static void draw_tile(board *b, const tile *t, draw_strand *draw)
 {
     double reach = 2 * edge;
-    if (t->centre.x < -reach || t->centre.x > 1000 + reach || t->centre.y < -reach || t->centre.y > 1000 + reach)
+    if (t->centre.x < -reach || t->centre.x > 1000 + reach || t->centre.y < -reach ||
+        t->centre.y > 1000 + reach)
         return;
     for (int32_t i = 0; i < t->sides; i++) draw(b, t, i);
 }
@@ -110,15 +112,17 @@ static void draw_tiles(board *b, draw_strand *draw)
 {
     for (int32_t v = -3; v <= 3; v++)
         for (int32_t u = -4; u <= 4; u++) {
-            spot knot = plus(at(500, 500), plus(times(direction(0), spacing * u),
-                                                times(direction(1.0 / 6), spacing * v)));
+            spot knot = plus(at(500, 500),
+                             plus(times(direction(0), spacing * u), times(direction(1.0 / 6), spacing * v)));
             draw_tile(b, &(tile){knot, 12, 2, 0}, draw);
             if (draw == draw_crossings) draw_rosette(b, knot);
             for (int32_t k = 0; k < 3; k++)
                 draw_tile(b, &(tile){polar(knot, spacing / 2, k / 6.0), 4, 1, k / 6.0}, draw);
             for (int32_t k = 0; k < 2; k++)
-                draw_tile(b, &(tile){polar(knot, spacing / 1.7320508075688773, (2 * k + 1) / 12.0), 6, 2,
-                                     (2 * k + 1) / 12.0}, draw);
+                draw_tile(b,
+                          &(tile){polar(knot, spacing / 1.7320508075688773, (2 * k + 1) / 12.0), 6, 2,
+                                  (2 * k + 1) / 12.0},
+                          draw);
         }
 }
 

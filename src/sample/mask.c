@@ -1,5 +1,5 @@
-// A lion's head as one cuts it from folded paper: everything is drawn twice, once in the mirror. The lobes of the
-// mane hang on nothing.
+// A lion's head as one cuts it from folded paper: everything is drawn twice, once in the mirror. The lobes of
+// the mane hang on nothing.
 #include "sample/samples.h"
 
 static const spot heart = {500, 500};
@@ -30,7 +30,8 @@ static void draw_symmetric(board *b, tone t, const spot *p, int32_t curves)
     add_point(b, p[0]);
     for (int32_t i = 0; i < curves; i++) add_bezier(b, p[3 * i], p[3 * i + 1], p[3 * i + 2], p[3 * i + 3]);
     for (int32_t i = curves - 1; i >= 0; i--)
-        add_bezier(b, mirrored(p[3 * i + 3]), mirrored(p[3 * i + 2]), mirrored(p[3 * i + 1]), mirrored(p[3 * i]));
+        add_bezier(b, mirrored(p[3 * i + 3]), mirrored(p[3 * i + 2]), mirrored(p[3 * i + 1]),
+                   mirrored(p[3 * i]));
     end_polygon(b);
 }
 
@@ -46,9 +47,10 @@ static void draw_lobe(board *b, spot from, spot to, double bulge, double bend)
 static void draw_mane_ring(board *b, int32_t lobes, double inner, double outer, double bulge, double phase)
 {
     for (int32_t i = 0; i < lobes; i++) {
-        double share = (i + phase) / lobes;          // 0 at the top, 1 at the chin
+        double share = (i + phase) / lobes; // 0 at the top, 1 at the chin
         double turns = -0.25 + 0.5 * share, stretch = 1 + 0.02 * share * share;
-        draw_lobe(b, polar(heart, inner * stretch, turns), polar(heart, outer * stretch, turns + 0.012), bulge, 0.1);
+        draw_lobe(b, polar(heart, inner * stretch, turns), polar(heart, outer * stretch, turns + 0.012),
+                  bulge, 0.1);
     }
 }
 
@@ -63,10 +65,10 @@ static void draw_ears(board *b)
 
 static void draw_face(board *b)
 {
-    static const spot gap[] = {{500, 282}, {610, 278}, {716, 340}, {722, 470}, {726, 590}, {660, 640}, {626, 720},
-                               {600, 790}, {550, 806}, {500, 806}};
-    static const spot face[] = {{500, 298}, {600, 294}, {700, 352}, {705, 470}, {708, 580}, {646, 630}, {610, 712},
-                                {586, 772}, {548, 788}, {500, 788}};
+    static const spot gap[] = {{500, 282}, {610, 278}, {716, 340}, {722, 470}, {726, 590},
+                               {660, 640}, {626, 720}, {600, 790}, {550, 806}, {500, 806}};
+    static const spot face[] = {{500, 298}, {600, 294}, {700, 352}, {705, 470}, {708, 580},
+                                {646, 630}, {610, 712}, {586, 772}, {548, 788}, {500, 788}};
     draw_symmetric(b, BLACK, gap, 3);
     draw_symmetric(b, WHITE, face, 3);
 }
@@ -89,7 +91,8 @@ static void draw_eyes(board *b)
 
 static void draw_nose(board *b)
 {
-    static const spot nose[] = {{500, 604}, {530, 600}, {556, 602}, {562, 618}, {560, 640}, {520, 662}, {500, 668}};
+    static const spot nose[] = {{500, 604}, {530, 600}, {556, 602}, {562, 618},
+                                {560, 640}, {520, 662}, {500, 668}};
     draw_both_curves(b, BLACK, (spot[]){at(529, 508), at(536, 540), at(544, 566), at(566, 592)}, 9, 4);
     draw_symmetric(b, BLACK, nose, 2);
     draw_both_leaves(b, WHITE, at(514, 640), at(546, 622), 0.2, 0.05);

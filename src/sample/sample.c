@@ -53,8 +53,8 @@ jali_status jali_sample(jali_context *ctx, const char *name, int32_t side_px, ja
     while (i < SAMPLE_COUNT && strcmp(infos[i].name, name) != 0) i++;
     if (i == SAMPLE_COUNT) return unknown_name(ctx, name);
     if (side_px < LEAST_SIDE_PX || side_px > MOST_SIDE_PX)
-        return fail(ctx, JALI_BAD_VALUE, "a sample's side must be %d .. %d px, not %d", LEAST_SIDE_PX, MOST_SIDE_PX,
-                    side_px);
+        return fail(ctx, JALI_BAD_VALUE, "a sample's side must be %d .. %d px, not %d", LEAST_SIDE_PX,
+                    MOST_SIDE_PX, side_px);
     draws[i](&b);
     TRY(jali_bitmap_create(ctx, side_px, side_px, bitmap));
     TRY(rasterise_board(&b, bitmap));

@@ -1,10 +1,11 @@
-// A tree that branches in the wind, in a round window: limbs that taper, leaves at the twigs, some of them loose.
+// A tree that branches in the wind, in a round window: limbs that taper, leaves at the twigs, some of them
+// loose.
 #include "sample/samples.h"
 
 typedef struct branch {
     spot from;
     double turns, length, width;
-    int32_t order;   // 0 = the trunk
+    int32_t order; // 0 = the trunk
 } branch;
 
 enum { LAST_ORDER = 7, MOST_WAITING = 64 };
@@ -63,8 +64,8 @@ static void draw_roots(board *b, spot foot)
 {
     for (int32_t i = 0; i < 5; i++) {
         double side = i - 2;
-        spot p[4] = {plus(foot, at(side * 5, -62)), plus(foot, at(side * 7, -20)), plus(foot, at(side * 15, -8)),
-                     plus(foot, at(side * 36, 12))};
+        spot p[4] = {plus(foot, at(side * 5, -62)), plus(foot, at(side * 7, -20)),
+                     plus(foot, at(side * 15, -8)), plus(foot, at(side * 36, 12))};
         draw_curve(b, WHITE, p, 26, 6);
     }
 }
@@ -73,7 +74,8 @@ static void draw_grass(board *b)
 {
     for (int32_t i = 0; i < 70; i++) {
         double x = 90 + 820 * (i + next_share(b)) / 70, share = (x - 500) / 500;
-        spot root = at(x, 824 + 40 * share * share), tip = plus(root, at(14 * (next_share(b) - 0.3), -16 - 26 * next_share(b)));
+        spot root = at(x, 824 + 40 * share * share),
+             tip = plus(root, at(14 * (next_share(b) - 0.3), -16 - 26 * next_share(b)));
         draw_leaf(b, WHITE, root, tip, 0.1, 0.12);
     }
 }
