@@ -12,7 +12,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     jali_context *ctx;
     jali_bytes archive = {0};
     zip_writer zip = {0};
-    REQUIRE(jali_context_create(NULL, &ctx) == JALI_OK);
+    jali_context_options opt = jali_context_defaults();
+    opt.threads = 1;
+    REQUIRE(jali_context_create(&opt, &ctx) == JALI_OK);
     REQUIRE(zip_add(ctx, &zip, "3D/3dmodel.model", data, size, 1, &archive) == JALI_OK);
     REQUIRE(zip_finish(ctx, &zip, &archive) == JALI_OK);
     int result = fuzz_model(archive.data, archive.size, JALI_FORMAT_3MF);

@@ -284,6 +284,50 @@ TEST(random_pairs_agree_with_a_search_of_all_simplices)
     CHECK(tried > 10000 && met > tried / 10 && met < tried - tried / 10);
 }
 
+// Triangles between random points of a small lattice; `far` adds one at a distance that needs the wide arithmetic
+// and float boxes that are rounded.
+static jali_mesh random_soup(uint64_t seed, int32_t count, double spread, bool far)
+{
+    jali_mesh mesh;
+    CHECK_OK(mesh_create(ctx, 3 * (count + far), count + far, &mesh));
+    for (int32_t t = 0; t < count + far; t++) {
+        double centre[3];
+        for (int k = 0; k < 3; k++) centre[k] = (double)(next_random(&seed) >> 58) + (t == count ? 0x1p50 : 0);
+        for (int i = 0; i < 3; i++) {
+            mesh.triangle[t][i] = 3 * t + i;
+            for (int k = 0; k < 3; k++)
+                mesh.vertex[3 * t + i][k] = centre[k] + floor(spread * (double)(next_random(&seed) >> 11) * 0x1p-53);
+        }
+    }
+    return mesh;
+}
+
+TEST(the_search_finds_every_pair)
+{
+    for (int round = 0; round < 12; round++) {
+        jali_mesh mesh = random_soup(round + 77u, 500, round % 3 * 12 + 12, round & 1);
+        jali_check_report r;
+        lattice l;
+        int64_t pairs = 0;
+        int32_t first[1600], (*t)[3] = mesh.triangle;
+        CHECK_OK(jali_check(ctx, &mesh, NULL, &r));
+        CHECK_OK(weld_points(ctx, mesh.vertex_count, (const double(*)[3])mesh.vertex, first, NULL));
+        CHECK_OK(lattice_create(ctx, mesh.vertex_count, (const double(*)[3])mesh.vertex, &l));
+        CHECK_INT(l.narrow, !(round & 1));
+        for (int32_t i = 0; i < 3 * mesh.triangle_count; i++) t[i / 3][i % 3] = first[t[i / 3][i % 3]];
+        for (int32_t i = 0; i < mesh.triangle_count; i++)
+            for (int32_t j = 0; j < i; j++) {
+                normal a = normal_of(l.narrow, l.point[t[i][0]], l.point[t[i][1]], l.point[t[i][2]]);
+                normal b = normal_of(l.narrow, l.point[t[j][0]], l.point[t[j][1]], l.point[t[j][2]]);
+                pairs += axis_of(&a) >= 0 && axis_of(&b) >= 0 && triangles_meet(&l, t[i], t[j]);
+            }
+        CHECK_INT(r.intersections.count, pairs);
+        CHECK(pairs > 50);
+        lattice_free(ctx, &l);
+        jali_mesh_free(ctx, &mesh);
+    }
+}
+
 TEST(degenerate_and_repeated_triangles_are_found)
 {
     jali_mesh cube = box_shape(0, 0, 0, 1, 1, 1);
@@ -400,7 +444,7 @@ int main(void)
         RUN(a_box_inside_out_is_misplaced), RUN(cubes_that_share_an_edge_or_a_vertex_are_not_manifold),
         RUN(nested_shells_are_judged_by_what_encloses_them), RUN(boxes_through_each_other_are_counted),
         RUN(touching_boxes_intersect_without_a_common_vertex), RUN(pairs_in_one_plane), RUN(pairs_in_space),
-        RUN(random_pairs_agree_with_a_search_of_all_simplices), RUN(degenerate_and_repeated_triangles_are_found),
+        RUN(random_pairs_agree_with_a_search_of_all_simplices), RUN(the_search_finds_every_pair), RUN(degenerate_and_repeated_triangles_are_found),
         RUN(pierced_plates_are_solids), RUN(threads_do_not_change_a_report),
         RUN(what_cannot_be_checked_is_refused), RUN(coordinates_of_any_size_are_put_on_a_lattice),
         RUN(the_report_reads_well), RUN(every_refused_allocation_is_a_status),

@@ -182,7 +182,6 @@ jali_status jali_check(jali_context *ctx, const jali_mesh *mesh, const jali_chec
     if (!opt.skip_intersections) TRY(count_intersections(ctx, &s, &crossings, &r.intersections_capped));
     r.intersections = found_at_pair(mesh, &crossings);
     conclude(&r);
-    TRY(step(ctx, "check", 1));
     *report = r;
 done:
     surface_free(ctx, &s);

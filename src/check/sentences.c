@@ -79,14 +79,16 @@ static json_t *json_point(const double at[3])
 
 static json_t *json_finding(const jali_finding *f, bool at_least)
 {
-    json_t *object = json_pack("{sI}", "count", (json_int_t)f->count);
+    json_t *object = json_pack("{sI so}", "count", (json_int_t)f->count, "first_mm",
+                               f->count ? json_point(f->at_mm) : json_null());
     if (at_least) json_object_set_new(object, "at_least", json_true());
-    json_object_set_new(object, "first_mm", f->count ? json_point(f->at_mm) : json_null());
     return object;
 }
 
+// NULL when memory runs out anywhere: half a report would pass for a whole one.
 static json_t *json_report(const jali_check_report *r)
 {
+    bool whole = true;
     json_t *o = json_pack("{si sb sb sb sb sb sb}", "version", 1, "closed", r->closed, "manifold", r->manifold,
                           "oriented", r->oriented, "clean", r->clean, "apart", r->apart, "solid", r->solid);
     json_t *counts = json_pack("{si si si si si si si sI}", "vertices", r->vertices, "triangles", r->triangles,
@@ -101,17 +103,18 @@ static json_t *json_report(const jali_check_report *r)
         {"misplaced_shells", &r->misplaced_shells}, {"degenerate_triangles", &r->degenerate_triangles},
         {"repeated_triangles", &r->repeated_triangles},
     };
-    json_object_update(o, counts);
-    json_object_set_new(o, "genus", r->genus >= 0 ? json_integer(r->genus) : json_null());
+    whole &= json_object_update(o, counts) == 0;
+    whole &= json_object_set_new(o, "genus", r->genus >= 0 ? json_integer(r->genus) : json_null()) == 0;
     for (size_t i = 0; i < sizeof findings / sizeof *findings; i++)
-        json_object_set_new(o, findings[i].key, json_finding(findings[i].found, false));
-    json_object_set_new(o, "self_intersections",
-                        r->intersections_skipped ? json_null()
-                                                 : json_finding(&r->intersections, r->intersections_capped));
-    json_object_update(o, measures);
+        whole &= json_object_set_new(o, findings[i].key, json_finding(findings[i].found, false)) == 0;
+    json_t *crossings =
+        r->intersections_skipped ? json_null() : json_finding(&r->intersections, r->intersections_capped);
+    whole &= json_object_set_new(o, "self_intersections", crossings) == 0;
+    whole &= json_object_update(o, measures) == 0;
     json_decref(counts);
     json_decref(measures);
-    return o;
+    if (!whole) json_decref(o);
+    return whole ? o : NULL;
 }
 
 jali_status jali_check_json(jali_context *ctx, const jali_check_report *report, jali_bytes *json)

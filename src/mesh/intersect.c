@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-enum { BLOCK = 1024, BLOCK_CAP = 1000000 };
+enum { BLOCK = 1024, BLOCK_CAP = 1000000, BATCH = 128 };
 
 typedef const int64_t *point;
 
@@ -215,7 +215,8 @@ void surface_free(jali_context *ctx, surface *s)
 typedef struct search {
     jali_context *ctx;
     const surface *s;
-    finding *block; // [blocks]
+    int32_t first_block; // of this batch
+    finding *block;      // [blocks]
 } search;
 
 static void note_pair(finding *f, int32_t a, int32_t b)
@@ -232,10 +233,10 @@ static void search_block(void *shared, int32_t index)
 {
     search *job = shared;
     const surface *s = job->s;
-    finding *f = &job->block[index];
-    int32_t end = MIN((index + 1) * BLOCK, s->face_count);
-    if (stopping(job->ctx)) return;
-    for (int32_t place = index * BLOCK; place < end; place++) {
+    int32_t block = job->first_block + index, first = block * BLOCK;
+    int32_t end = first + MIN(BLOCK, s->face_count - first);
+    finding *f = &job->block[block];
+    for (int32_t place = first; place < end && !stopping(job->ctx); place++) {
         int32_t a = s->face[s->tree.item[place]];
         box b = box_of_triangle(s->l, s->triangle[a]);
         box_walk walk = box_walk_start(&s->tree, &b, place + 1);
@@ -251,13 +252,16 @@ static void search_block(void *shared, int32_t index)
 jali_status count_intersections(jali_context *ctx, const surface *s, finding *found, bool *capped)
 {
     jali_status status = JALI_OK;
-    int32_t blocks = (s->face_count + BLOCK - 1) / BLOCK;
+    int32_t blocks = s->face_count / BLOCK + (s->face_count % BLOCK != 0);
     search job = {.ctx = ctx, .s = s};
     *found = (finding){0};
     *capped = false;
     TRY(ALLOCATE_CLEARED(ctx, job.block, blocks));
-    parallel(ctx, blocks, search_block, &job);
-    TRY(step(ctx, "check", 0.9));
+    for (job.first_block = 0; job.first_block < blocks; job.first_block += BATCH) {
+        TRY(step(ctx, "check", 0.5 + 0.5 * job.first_block / blocks));
+        parallel(ctx, MIN((int32_t)BATCH, blocks - job.first_block), search_block, &job);
+    }
+    TRY(step(ctx, "check", 1)); // a block that was stopped has not counted all
     for (int32_t i = 0; i < blocks; i++) {
         finding *f = &job.block[i];
         if (f->count > BLOCK_CAP) *capped = true;

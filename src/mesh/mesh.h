@@ -16,7 +16,8 @@ jali_status mesh_validate(jali_context *ctx, const jali_mesh *mesh);
 /// (0 and -0 are equal).
 ///   out    first     [count], may be used at once as a renumbering
 ///          distinct  how many places there are; may be NULL
-///   cost   O(count) expected, the same for any order of threads: there is one
+///   fails  JALI_NO_MEMORY
+///   cost   O(count) expected
 jali_status weld_points(jali_context *ctx, int32_t count, const double (*point)[3], int32_t *first,
                         int32_t *distinct);
 
