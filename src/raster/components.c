@@ -6,8 +6,7 @@
 #include "raster/raster.h"
 #include "base/base.h"
 
-// First column >= x whose bit in the row, xored with flip, is set; the width when there is none.
-static int32_t next_bit(const uint64_t *row, int32_t x, int32_t width, uint64_t flip)
+int32_t next_white(const uint64_t *row, int32_t x, int32_t width, uint64_t flip)
 {
     int32_t words = (width + 63) / 64;
     int32_t i = x >> 6;
@@ -53,10 +52,10 @@ static void find_band(void *shared, int32_t band)
     for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, a->height_px); y++) {
         const uint64_t *row = a->word + (int64_t)y * a->stride;
         int32_t(*span)[2] = job->c->span + job->c->first[y];
-        for (int32_t x = next_bit(row, 0, a->width_px, job->flip); x < a->width_px; span++) {
+        for (int32_t x = next_white(row, 0, a->width_px, job->flip); x < a->width_px; span++) {
             (*span)[0] = x;
-            (*span)[1] = next_bit(row, x, a->width_px, ~job->flip);
-            x = next_bit(row, (*span)[1], a->width_px, job->flip);
+            (*span)[1] = next_white(row, x, a->width_px, ~job->flip);
+            x = next_white(row, (*span)[1], a->width_px, job->flip);
         }
     }
 }
@@ -140,15 +139,4 @@ jali_status component_areas(jali_context *ctx, const components *c, int64_t **ar
     if (status != JALI_OK) return status;
     for (int32_t i = 0; i < c->run_count; i++) (*area)[c->label[i]] += c->span[i][1] - c->span[i][0];
     return JALI_OK;
-}
-
-void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white)
-{
-    uint64_t *row = dst->word + (int64_t)y * dst->stride;
-    for (int32_t i = x0 >> 6; i <= (x1 - 1) >> 6; i++) {
-        uint64_t mask = ~UINT64_C(0);
-        if (i == x0 >> 6) mask &= ~UINT64_C(0) << (x0 & 63);
-        if (i == (x1 - 1) >> 6) mask &= ~UINT64_C(0) >> (63 - ((x1 - 1) & 63));
-        row[i] = white ? row[i] | mask : row[i] & ~mask;
-    }
 }

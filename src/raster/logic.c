@@ -103,3 +103,40 @@ bool any_white(jali_context *ctx, const jali_bitmap *a)
         if (a->word[i]) return true;
     return false;
 }
+
+// `count` bits (1 .. 64) of the row from column x on; bits beyond the row's words read as 0.
+static uint64_t bits_at(const uint64_t *row, int64_t words, int64_t x)
+{
+    int64_t i = x >> 6;
+    int32_t bit = (int32_t)(x & 63);
+    uint64_t low = i < words ? row[i] >> bit : 0;
+    return bit && i + 1 < words ? low | row[i + 1] << (64 - bit) : low;
+}
+
+void cut_out(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst)
+{
+    for (int32_t y = 0; y < dst->height_px; y++) {
+        const uint64_t *from = src->word + (int64_t)(y + top) * src->stride;
+        uint64_t *to = dst->word + (int64_t)y * dst->stride;
+        for (int32_t x = 0; x < dst->width_px; x += 64) {
+            uint64_t mask = dst->width_px - x >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << (dst->width_px - x)) - 1;
+            to[x >> 6] = bits_at(from, src->stride, (int64_t)left + x) & mask;
+        }
+    }
+}
+
+void paste(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst)
+{
+    int32_t shift = left & 63;
+    for (int32_t y = 0; y < src->height_px; y++) {
+        const uint64_t *from = src->word + (int64_t)y * src->stride;
+        uint64_t *to = dst->word + (int64_t)(y + top) * dst->stride + (left >> 6);
+        for (int32_t x = 0; x < src->width_px; x += 64) {
+            uint64_t mask = src->width_px - x >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << (src->width_px - x)) - 1;
+            uint64_t word = from[x >> 6];
+            to[x >> 6] = (to[x >> 6] & ~(mask << shift)) | word << shift;
+            if (shift && mask >> (64 - shift))
+                to[(x >> 6) + 1] = (to[(x >> 6) + 1] & ~(mask >> (64 - shift))) | word >> (64 - shift);
+        }
+    }
+}

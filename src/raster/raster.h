@@ -20,6 +20,11 @@ int64_t count_white(jali_context *ctx, const jali_bitmap *a);
 int64_t count_combined(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b);
 bool any_white(jali_context *ctx, const jali_bitmap *a);
 
+/// Copy src into dst with its upper left corner at (left, top); it lies wholly inside.
+void paste(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst);
+/// Copy the window of src that begins at (left, top) and has dst's size; it lies wholly inside.
+void cut_out(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst);
+
 // --- Morphology (morphology.c)
 
 /// A structuring element that is convex and symmetric about its centre, row by row from the middle outwards:
@@ -52,7 +57,22 @@ jali_status open_by(jali_context *ctx, const jali_bitmap *src, const element *e,
 jali_status close_by(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside,
                      jali_bitmap *scratch, jali_bitmap *dst);
 
+// --- Size (resize.c)
+
+/// Each pixel of dst takes the pixel of src's window that its centre falls on.
+void resize_nearest(jali_context *ctx, const jali_bitmap *src, int32_t left, int32_t top, int32_t width,
+                    int32_t height, jali_bitmap *dst);
+
+// --- Medial axis (axis.c)
+
+/// The centres of the maximal squares inside the white (or black) pixels: the ridge of the chessboard distance.
+/// Source: Lantuejoul's formula, the union over k of E_k - opening(E_k), E_k the k-fold 3 x 3 erosion.
+jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, jali_bitmap *axis);
+
 // --- Components (components.c)
+
+/// First column x .. end whose bit in the row, xored with flip, is set; `end` when there is none.
+int32_t next_white(const uint64_t *row, int32_t x, int32_t end, uint64_t flip);
 
 /// Maximal horizontal runs of one tone, labelled by connected component.
 typedef struct components {
@@ -73,5 +93,9 @@ int32_t run_at(const components *c, int32_t x, int32_t y);
 jali_status component_areas(jali_context *ctx, const components *c, int64_t **area);
 /// Set the run's pixels in dst.
 void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white);
+/// Paint the element centred at (x, y), cut off at the bitmap's border.
+void paint_element(jali_bitmap *dst, int32_t x, int32_t y, const element *brush, bool white);
+/// Paint the element at each pixel of the straight line between two pixels.
+void paint_stroke(jali_bitmap *dst, const int32_t from[2], const int32_t to[2], const element *brush, bool white);
 
 #endif

@@ -1,0 +1,53 @@
+// Connect: join all solid parts into one by the fewest pixels.
+#ifndef JALI_CONNECT_H
+#define JALI_CONNECT_H
+
+#include <jali/bitmap.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum jali_metric {
+    JALI_METRIC_CITY_BLOCK, // fewest pixels of a 4-connected path: the paper's
+    JALI_METRIC_OCTAGON     // nearly Euclidean: bridges are short in mm whatever their direction
+} jali_metric;
+
+typedef struct jali_connect_options {
+    jali_metric metric;   // default city block
+    int32_t width_px;     // width of a bridge, >= 1 (default 1); wider ones have round ends
+} jali_connect_options;
+
+JALI_API jali_connect_options jali_connect_defaults(void);
+
+typedef struct jali_bridge {
+    int32_t from[2], to[2]; // the two solid pixels (x, y) that it joins
+} jali_bridge;
+
+/// {0} is valid and empty.
+typedef struct jali_bridges {
+    int32_t count;
+    jali_bridge *bridge;    // [count], in the order they were laid
+    int64_t pixels;         // black pixels that became white
+} jali_bridges;
+
+JALI_API void jali_bridges_free(jali_context *ctx, jali_bridges *bridges);
+
+/// Join the smallest white component to its nearest neighbour until one is left (Algorithm 2).
+///
+/// The order is exactly the greedy one: a laid path belongs to its component and can shorten later joins. Ties:
+/// the component whose first pixel comes first in raster order; the target pixel, then the source pixel, that
+/// comes first in raster order.
+///   in     drawing   1 = solid, 4-connected
+///   out    joined    may be drawing; one component (or none, when drawing has none)
+///          bridges   NULL when not wanted
+///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT
+///   cost   a component is the smallest of a pair at most log2(pixels) times, so the searches together look at
+///          O(area log area) pixels, 64 at a time
+JALI_API jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing, const jali_connect_options *opt,
+                                  jali_bitmap *joined, jali_bridges *bridges);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,152 @@
+// Parts as lists of runs with a queue by area: what Algorithm 2 asks for its smallest component.
+#include "connect/parts.h"
+#include "base/base.h"
+
+static int32_t root_of(int32_t *parent, int32_t i)
+{
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+static bool before(const struct part_key *a, const struct part_key *b)
+{
+    return a->area != b->area ? a->area < b->area : a->root < b->root;
+}
+
+jali_status queue_part(jali_context *ctx, parts *p, int32_t root)
+{
+    jali_status status = GROW(ctx, p->heap, p->heap_capacity, p->heap_count + 1);
+    if (status != JALI_OK) return status;
+    struct part_key key = {p->area[root], root};
+    int32_t i = p->heap_count++;
+    for (; i > 0 && before(&key, &p->heap[(i - 1) / 2]); i = (i - 1) / 2) p->heap[i] = p->heap[(i - 1) / 2];
+    p->heap[i] = key;
+    return JALI_OK;
+}
+
+static struct part_key pop(parts *p)
+{
+    struct part_key top = p->heap[0], last = p->heap[--p->heap_count];
+    int32_t i = 0;
+    for (int32_t child; (child = 2 * i + 1) < p->heap_count; i = child) {
+        if (child + 1 < p->heap_count && before(&p->heap[child + 1], &p->heap[child])) child++;
+        if (!before(&p->heap[child], &last)) break;
+        p->heap[i] = p->heap[child];
+    }
+    p->heap[i] = last;
+    return top;
+}
+
+int32_t smallest_part(parts *p)
+{
+    struct part_key key;
+    do key = pop(p);
+    while (p->parent[key.root] != key.root || p->area[key.root] != key.area);
+    return key.root;
+}
+
+int32_t part_at(parts *p, int32_t x, int32_t y)
+{
+    int32_t run = run_at(&p->c, x, y);
+    if (run >= 0) return root_of(p->parent, p->c.label[run]);
+    for (run = p->row_bridge[y]; p->run[run].x0 > x || p->run[run].x1 <= x; run = p->run[run].below) {}
+    return root_of(p->parent, p->run[run].label);
+}
+
+static void extend_box(int32_t box[4], int32_t y, int32_t x0, int32_t x1)
+{
+    box[0] = MIN(box[0], x0);
+    box[1] = MIN(box[1], y);
+    box[2] = MAX(box[2], x1);
+    box[3] = MAX(box[3], y + 1);
+}
+
+// Append run `i` to its part's list.
+static void append(parts *p, int32_t root, int32_t i)
+{
+    p->run[i].next = -1;
+    if (p->tail[root] >= 0) p->run[p->tail[root]].next = i;
+    else p->head[root] = i;
+    p->tail[root] = i;
+    p->area[root] += p->run[i].x1 - p->run[i].x0;
+    extend_box(p->box[root], p->run[i].y, p->run[i].x0, p->run[i].x1);
+}
+
+jali_status part_add_run(jali_context *ctx, parts *p, int32_t root, int32_t y, int32_t x0, int32_t x1)
+{
+    jali_status status = GROW(ctx, p->run, p->run_capacity, p->run_count + 1);
+    if (status != JALI_OK) return status;
+    int32_t i = p->run_count++;
+    p->run[i] = (struct part_run){y, x0, x1, -1, root, p->row_bridge[y]};
+    p->row_bridge[y] = i;
+    append(p, root, i);
+    return JALI_OK;
+}
+
+int32_t unite_parts(parts *p, int32_t a, int32_t b)
+{
+    if (a == b) return a;
+    int32_t root = MIN(a, b), child = MAX(a, b);
+    p->parent[child] = root;
+    p->run[p->tail[root]].next = p->head[child];
+    p->tail[root] = p->tail[child];
+    p->area[root] += p->area[child];
+    extend_box(p->box[root], p->box[child][1], p->box[child][0], p->box[child][2]);
+    p->box[root][3] = MAX(p->box[root][3], p->box[child][3]);
+    p->alive--;
+    return root;
+}
+
+static void fill_parts(parts *p)
+{
+    for (int32_t i = 0; i < p->c.count; i++) {
+        p->parent[i] = i;
+        p->head[i] = p->tail[i] = -1;
+        p->box[i][0] = p->box[i][1] = INT32_MAX;
+        p->box[i][2] = p->box[i][3] = 0;
+    }
+    for (int32_t y = 0; y < p->c.height_px; y++) {
+        p->row_bridge[y] = -1;
+        for (int32_t i = p->c.first[y]; i < p->c.first[y + 1]; i++) {
+            p->run[i] = (struct part_run){y, p->c.span[i][0], p->c.span[i][1], -1, p->c.label[i], -1};
+            append(p, p->c.label[i], i);
+        }
+    }
+}
+
+jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *out)
+{
+    jali_status status;
+    parts p = {0};
+    TRY(label_components(ctx, drawing, true, 4, &p.c));
+    p.alive = p.c.count;
+    p.run_count = p.c.run_count;
+    p.run_capacity = (size_t)p.c.run_count;
+    TRY(ALLOCATE(ctx, p.parent, p.c.count));
+    TRY(ALLOCATE_CLEARED(ctx, p.area, p.c.count));
+    TRY(ALLOCATE(ctx, p.box, p.c.count));
+    TRY(ALLOCATE(ctx, p.head, p.c.count));
+    TRY(ALLOCATE(ctx, p.tail, p.c.count));
+    TRY(ALLOCATE(ctx, p.run, p.c.run_count));
+    TRY(ALLOCATE(ctx, p.row_bridge, drawing->height_px));
+    fill_parts(&p);
+    for (int32_t i = 0; i < p.c.count; i++) TRY(queue_part(ctx, &p, i));
+done:
+    if (status != JALI_OK) parts_free(ctx, &p);
+    *out = p;
+    return status;
+}
+
+void parts_free(jali_context *ctx, parts *p)
+{
+    components_free(ctx, &p->c);
+    release(ctx, p->parent);
+    release(ctx, p->area);
+    release(ctx, p->box);
+    release(ctx, p->head);
+    release(ctx, p->tail);
+    release(ctx, p->run);
+    release(ctx, p->row_bridge);
+    release(ctx, p->heap);
+    *p = (parts){0};
+}

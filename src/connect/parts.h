@@ -1,0 +1,37 @@
+// The solid parts of a picture while they are being joined. Internal to connect.
+#ifndef CONNECT_PARTS_H
+#define CONNECT_PARTS_H
+
+#include "raster/raster.h"
+
+/// A part is a set of runs with one root; runs of laid bridges are appended to those of the picture.
+typedef struct parts {
+    components c;            // the picture's runs and the labels they began with
+    int32_t alive;           // parts left
+    int32_t *parent;         // [c.count], union-find; the smallest label of a part is its root
+    int64_t *area;           // [c.count], at roots
+    int32_t (*box)[4];       // [c.count], at roots: x0, y0, x1, y1 (beyond)
+    int32_t *head, *tail;    // [c.count], at roots: the list of its runs
+    int32_t run_count;       // picture's and bridges' runs
+    size_t run_capacity;
+    struct part_run { int32_t y, x0, x1, next, label, below; } *run; // below: next bridge run in the same row
+    int32_t *row_bridge;     // [height], first bridge run of the row or -1
+    int32_t heap_count;
+    size_t heap_capacity;
+    struct part_key { int64_t area; int32_t root; } *heap; // smallest area first; stale entries are skipped
+} parts;
+
+jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *p);
+void parts_free(jali_context *ctx, parts *p);
+/// The root of the part that holds the white pixel (x, y).
+int32_t part_at(parts *p, int32_t x, int32_t y);
+/// Take the smallest part (by area, then by label) out of the queue.
+int32_t smallest_part(parts *p);
+/// Give a part a run of bridge pixels.
+jali_status part_add_run(jali_context *ctx, parts *p, int32_t root, int32_t y, int32_t x0, int32_t x1);
+/// Make two parts one; returns the root.
+int32_t unite_parts(parts *p, int32_t a, int32_t b);
+/// Put a part (back) into the queue.
+jali_status queue_part(jali_context *ctx, parts *p, int32_t root);
+
+#endif

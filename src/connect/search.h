@@ -1,0 +1,21 @@
+// The nearest pixel of any other part. Internal to connect.
+#ifndef CONNECT_SEARCH_H
+#define CONNECT_SEARCH_H
+
+#include "connect/parts.h"
+#include <jali/connect.h>
+
+/// Scratch of the search: two windows of the picture.
+typedef struct search {
+    uint64_t *grown, *next; // [capacity] words each
+    size_t grown_capacity, next_capacity;
+} search;
+
+/// Find the white pixel outside the part `root` that is nearest to it, and the part's pixel nearest to that.
+///   in     solid     the picture with all bridges so far; holds at least two parts
+///   fails  JALI_NO_MEMORY, JALI_CANCELLED
+jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                          jali_metric metric, search *s, jali_bridge *bridge);
+void search_free(jali_context *ctx, search *s);
+
+#endif

@@ -1,0 +1,153 @@
+// The forward model of the printer, and the picture's error and recall under it.
+//
+// Source:  Binary Image Carving for 3D Printing, sections 4.2 and 6 (Figs. 6, 11, 14): solids below phi_s and
+//          voids below phi_v do not appear, solids come out phi_e wider than drawn.
+// Model:   printed = grow(close(open(mask, phi_s), phi_v), phi_e / 2) with discs on a grid finer than the picture.
+//          A disc has whole diameter floor(phi / pixel), so that a bar of exactly phi prints wherever it lies.
+// Checked: tests/test_predict.c on bars of known width.
+#include <jali/predict.h>
+#include "raster/raster.h"
+#include "base/base.h"
+
+#include <math.h>
+
+static const double FINE_PX_PER_PHI_S = 32; // finer than this gains nothing: 1/32 of the thinnest feature
+
+jali_predict_options jali_predict_defaults(void)
+{
+    return (jali_predict_options){.phi_e_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .recall = true};
+}
+
+static int32_t choose_factor(double pixel_mm, double phi_s_mm)
+{
+    int32_t factor = 1;
+    while (factor < 4 && phi_s_mm / pixel_mm * factor < FINE_PX_PER_PHI_S) factor *= 2;
+    return factor;
+}
+
+jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture, const jali_predict_options *opt,
+                                  jali_reference *reference)
+{
+    jali_status status;
+    *reference = (jali_reference){0};
+    if (!(opt->picture_mm > 0) || !picture->word)
+        return fail(ctx, JALI_BAD_VALUE, "a prediction needs a picture with a width in mm above 0");
+    int32_t factor = choose_factor(opt->picture_mm / picture->width_px, opt->phi_s_mm);
+    reference->factor = factor;
+    TRY(jali_bitmap_create(ctx, picture->width_px * factor, picture->height_px * factor, &reference->picture));
+    resize_nearest(ctx, picture, 0, 0, picture->width_px, picture->height_px, &reference->picture);
+    if (opt->recall) {
+        TRY(medial_axis(ctx, picture, true, true, &reference->axis_white));
+        TRY(medial_axis(ctx, picture, false, true, &reference->axis_black));
+        reference->axis_white_count = count_white(ctx, &reference->axis_white);
+        reference->axis_black_count = count_white(ctx, &reference->axis_black);
+    }
+done:
+    if (status != JALI_OK) jali_reference_free(ctx, reference);
+    return status;
+}
+
+void jali_reference_free(jali_context *ctx, jali_reference *reference)
+{
+    jali_bitmap_free(ctx, &reference->picture);
+    jali_bitmap_free(ctx, &reference->axis_white);
+    jali_bitmap_free(ctx, &reference->axis_black);
+    *reference = (jali_reference){0};
+}
+
+void jali_prediction_free(jali_context *ctx, jali_prediction *prediction)
+{
+    jali_bitmap_free(ctx, &prediction->printed);
+    *prediction = (jali_prediction){0};
+}
+
+// Share of the axis's pixels whose centre prints in the tone.
+static double recall_of(jali_context *ctx, const jali_bitmap *axis, int64_t axis_count, const jali_bitmap *printed,
+                        bool white)
+{
+    if (axis_count == 0) return 1;
+    int64_t hit = count_combined(ctx, white ? RULE_AND : RULE_AND_NOT, axis, printed);
+    return (double)hit / (double)axis_count;
+}
+
+// Print `mask` in place. `pixel_mm` is the grid's.
+static jali_status print_mask(jali_context *ctx, jali_bitmap *mask, bool outside, double pixel_mm,
+                              const jali_predict_options *opt)
+{
+    jali_status status;
+    jali_bitmap scratch = {0};
+    element solid = {0}, hollow = {0}, growth = {0};
+    const double tolerance = 1e-9; // phi / pixel is often a whole number that floating point misses by a hair
+    TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, &scratch));
+    TRY(element_disc(ctx, fmax(1, floor(opt->phi_s_mm / pixel_mm + tolerance)), &solid));
+    TRY(element_disc(ctx, fmax(1, floor(opt->phi_v_mm / pixel_mm + tolerance)), &hollow));
+    TRY(element_disc(ctx, 1 + 2 * floor(opt->phi_e_mm / 2 / pixel_mm + 0.5), &growth));
+    TRY(open_by(ctx, mask, &solid, outside, &scratch, mask));
+    TRY(close_by(ctx, mask, &hollow, outside, &scratch, mask));
+    TRY(dilate(ctx, mask, &growth, outside, &scratch));
+    jali_bitmap swap = *mask;
+    *mask = scratch;
+    scratch = swap;
+done:
+    jali_bitmap_free(ctx, &scratch);
+    element_free(ctx, &solid);
+    element_free(ctx, &hollow);
+    element_free(ctx, &growth);
+    return status;
+}
+
+// The mask on the fine grid: the picture's part scaled exactly, the margin around it as the surroundings are.
+static jali_status place_mask(jali_context *ctx, const jali_bitmap *mask, int32_t margin_px, bool outside,
+                              int32_t fine_margin, jali_bitmap *fine)
+{
+    jali_bitmap scaled;
+    jali_status status = jali_bitmap_create(ctx, fine->width_px - 2 * fine_margin, fine->height_px - 2 * fine_margin, &scaled);
+    if (status != JALI_OK) return status;
+    resize_nearest(ctx, mask, margin_px, margin_px, mask->width_px - 2 * margin_px, mask->height_px - 2 * margin_px,
+                   &scaled);
+    fill(ctx, fine, outside);
+    paste(&scaled, fine_margin, fine_margin, fine);
+    jali_bitmap_free(ctx, &scaled);
+    return JALI_OK;
+}
+
+static jali_status count_pieces(jali_context *ctx, const jali_bitmap *a, int32_t *pieces)
+{
+    components c;
+    jali_status status = label_components(ctx, a, true, 4, &c);
+    *pieces = c.count;
+    components_free(ctx, &c);
+    return status;
+}
+
+jali_status jali_predict(jali_context *ctx, const jali_reference *reference, const jali_bitmap *mask,
+                         int32_t margin_px, bool outside_solid, const jali_predict_options *opt,
+                         jali_prediction *prediction)
+{
+    jali_status status;
+    jali_bitmap fine = {0}, coarse = {0};
+    const jali_bitmap *picture = &reference->picture;
+    *prediction = (jali_prediction){0};
+    double pixel_mm = opt->picture_mm / picture->width_px;
+    double scale = (double)picture->width_px / (mask->width_px - 2 * margin_px);
+    int32_t margin = (int32_t)ceil(margin_px * scale);
+    TRY(jali_bitmap_create(ctx, picture->width_px + 2 * margin, picture->height_px + 2 * margin, &fine));
+    TRY(place_mask(ctx, mask, margin_px, outside_solid, margin, &fine));
+    TRY(print_mask(ctx, &fine, outside_solid, pixel_mm, opt));
+    TRY(count_pieces(ctx, &fine, &prediction->pieces));
+    TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &prediction->printed));
+    resize_nearest(ctx, &fine, margin, margin, picture->width_px, picture->height_px, &prediction->printed);
+    prediction->error_rate = (double)count_combined(ctx, RULE_XOR, picture, &prediction->printed) /
+                             ((double)picture->width_px * picture->height_px);
+    if (opt->recall) {
+        TRY(jali_bitmap_create(ctx, reference->axis_white.width_px, reference->axis_white.height_px, &coarse));
+        resize_nearest(ctx, &prediction->printed, 0, 0, picture->width_px, picture->height_px, &coarse);
+        prediction->recall_white = recall_of(ctx, &reference->axis_white, reference->axis_white_count, &coarse, true);
+        prediction->recall_black = recall_of(ctx, &reference->axis_black, reference->axis_black_count, &coarse, false);
+    }
+done:
+    if (status != JALI_OK) jali_prediction_free(ctx, prediction);
+    jali_bitmap_free(ctx, &fine);
+    jali_bitmap_free(ctx, &coarse);
+    return status;
+}
