@@ -3,6 +3,7 @@
 #define JALI_CONNECT_H
 
 #include <jali/bitmap.h>
+#include <jali/bridges.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -14,24 +15,10 @@ typedef enum jali_metric {
 } jali_metric;
 
 typedef struct jali_connect_options {
-    jali_metric metric;   // default city block
-    int32_t width_px;     // width of a bridge, >= 1 (default 1); wider ones have round ends
+    jali_metric metric; // default city block
 } jali_connect_options;
 
 JALI_API jali_connect_options jali_connect_defaults(void);
-
-typedef struct jali_bridge {
-    int32_t from[2], to[2]; // the two solid pixels (x, y) that it joins
-} jali_bridge;
-
-/// {0} is valid and empty.
-typedef struct jali_bridges {
-    int32_t count;
-    jali_bridge *bridge;    // [count], in the order they were laid
-    int64_t pixels;         // black pixels that became white
-} jali_bridges;
-
-JALI_API void jali_bridges_free(jali_context *ctx, jali_bridges *bridges);
 
 /// Join the smallest white component to its nearest neighbour until one is left (Algorithm 2).
 ///

@@ -8,11 +8,9 @@
 #include "connect/search.h"
 #include "base/base.h"
 
-#include <stdlib.h>
-
 jali_connect_options jali_connect_defaults(void)
 {
-    return (jali_connect_options){.metric = JALI_METRIC_CITY_BLOCK, .width_px = 1};
+    return (jali_connect_options){.metric = JALI_METRIC_CITY_BLOCK};
 }
 
 void jali_bridges_free(jali_context *ctx, jali_bridges *bridges)
@@ -28,6 +26,12 @@ typedef struct joining {
     int64_t pixels;
 } joining;
 
+// Join the part with the one that holds the white pixel (x, y).
+static int32_t join_with(joining *j, int32_t root, int32_t x, int32_t y)
+{
+    return unite_parts(&j->p, root, root_of_label(&j->p, label_at(&j->p, x, y)));
+}
+
 // White neighbours of a fresh bridge pixel that belong to other parts are joined with it: at the far end the
 // bridge can touch several parts at once.
 static int32_t unite_neighbours(joining *j, int32_t root, int32_t x, int32_t y)
@@ -36,18 +40,18 @@ static int32_t unite_neighbours(joining *j, int32_t root, int32_t x, int32_t y)
     for (int32_t k = 0; k < 4; k++) {
         int32_t u = x + beside[k][0], v = y + beside[k][1];
         if (u < 0 || v < 0 || u >= j->solid->width_px || v >= j->solid->height_px) continue;
-        if (jali_bitmap_get(j->solid, u, v)) root = unite_parts(&j->p, root, part_at(&j->p, u, v));
+        if (jali_bitmap_get(j->solid, u, v)) root = join_with(j, root, u, v);
     }
     return root;
 }
 
-static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32_t x, int32_t y)
+static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32_t label, int32_t x, int32_t y)
 {
     if (jali_bitmap_get(j->solid, x, y)) {
-        *root = unite_parts(&j->p, *root, part_at(&j->p, x, y));
+        *root = join_with(j, *root, x, y);
         return JALI_OK;
     }
-    jali_status status = part_add_run(ctx, &j->p, *root, y, x, x + 1);
+    jali_status status = part_add_pixel(ctx, &j->p, *root, label, x, y);
     if (status != JALI_OK) return status;
     jali_bitmap_set(j->solid, x, y, true);
     j->pixels++;
@@ -55,32 +59,14 @@ static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32
     return JALI_OK;
 }
 
-// The 4-connected path nearest to the straight line: |dx| + |dy| - 1 pixels between the ends.
+// |dx| + |dy| - 1 pixels between the ends.
 static jali_status lay_path(jali_context *ctx, joining *j, int32_t root, const jali_bridge *bridge)
 {
     jali_status status;
-    int32_t x = bridge->from[0], y = bridge->from[1];
-    int32_t step_x = bridge->to[0] < x ? -1 : 1, step_y = bridge->to[1] < y ? -1 : 1;
-    int64_t wide = abs(bridge->to[0] - x), high = abs(bridge->to[1] - y);
-    int64_t gone_x = 0, gone_y = 0;
-    while (gone_x < wide || gone_y < high) {
-        // Of the two next pixels, the one nearer to the line: compare (gone_x + 1/2) / wide with (gone_y + 1/2) / high.
-        if ((2 * gone_x + 1) * high < (2 * gone_y + 1) * wide || gone_y == high) x += step_x, gone_x++;
-        else y += step_y, gone_y++;
-        TRY(lay_pixel(ctx, j, &root, x, y));
-    }
+    line_walk walk = walk_line(bridge->from, bridge->to);
+    while (walk_on(&walk)) TRY(lay_pixel(ctx, j, &root, bridge->part[0], walk.x, walk.y));
     TRY(queue_part(ctx, &j->p, root));
 done:
-    return status;
-}
-
-// Paint each bridge again as a stroke of the full width with round ends.
-static jali_status widen_bridges(jali_context *ctx, const jali_bridges *laid, int32_t width_px, jali_bitmap *solid)
-{
-    element brush;
-    jali_status status = element_disc(ctx, width_px, &brush);
-    for (int32_t i = 0; i < laid->count; i++) paint_stroke(solid, laid->bridge[i].from, laid->bridge[i].to, &brush, true);
-    element_free(ctx, &brush);
     return status;
 }
 
@@ -93,8 +79,6 @@ jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing, const ja
     jali_bridges laid = {0};
     size_t capacity = 0;
     joining j = {.solid = &solid};
-    if (opt.width_px < 1)
-        return fail(ctx, JALI_BAD_VALUE, "a bridge of %d px is too thin; at least 1 px is accepted", opt.width_px);
     TRY(jali_bitmap_copy(ctx, drawing, &solid));
     TRY(parts_create(ctx, &solid, &j.p));
     int32_t parts_before = j.p.alive;
@@ -104,10 +88,11 @@ jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing, const ja
         TRY(GROW(ctx, laid.bridge, capacity, laid.count + 1));
         jali_bridge *bridge = &laid.bridge[laid.count];
         TRY(nearest_other(ctx, &solid, &j.p, root, opt.metric, &j.s, bridge));
+        bridge->part[0] = label_at(&j.p, bridge->from[0], bridge->from[1]);
+        bridge->part[1] = label_at(&j.p, bridge->to[0], bridge->to[1]);
         TRY(lay_path(ctx, &j, root, bridge));
         laid.count++;
     }
-    if (opt.width_px > 1) TRY(widen_bridges(ctx, &laid, opt.width_px, &solid));
     laid.pixels = j.pixels;
     if (joined == drawing) jali_bitmap_free(ctx, joined);
     *joined = solid;

@@ -45,12 +45,17 @@ int32_t smallest_part(parts *p)
     return key.root;
 }
 
-int32_t part_at(parts *p, int32_t x, int32_t y)
+int32_t label_at(const parts *p, int32_t x, int32_t y)
 {
     int32_t run = run_at(&p->c, x, y);
-    if (run >= 0) return root_of(p->parent, p->c.label[run]);
+    if (run >= 0) return p->c.label[run];
     for (run = p->row_bridge[y]; p->run[run].x0 > x || p->run[run].x1 <= x; run = p->run[run].below) {}
-    return root_of(p->parent, p->run[run].label);
+    return p->run[run].label;
+}
+
+int32_t root_of_label(parts *p, int32_t label)
+{
+    return root_of(p->parent, label);
 }
 
 static void extend_box(int32_t box[4], int32_t y, int32_t x0, int32_t x1)
@@ -72,12 +77,12 @@ static void append(parts *p, int32_t root, int32_t i)
     extend_box(p->box[root], p->run[i].y, p->run[i].x0, p->run[i].x1);
 }
 
-jali_status part_add_run(jali_context *ctx, parts *p, int32_t root, int32_t y, int32_t x0, int32_t x1)
+jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y)
 {
     jali_status status = GROW(ctx, p->run, p->run_capacity, p->run_count + 1);
     if (status != JALI_OK) return status;
     int32_t i = p->run_count++;
-    p->run[i] = (struct part_run){y, x0, x1, -1, root, p->row_bridge[y]};
+    p->run[i] = (struct part_run){y, x, x + 1, -1, label, p->row_bridge[y]};
     p->row_bridge[y] = i;
     append(p, root, i);
     return JALI_OK;

@@ -23,12 +23,14 @@ typedef struct parts {
 
 jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *p);
 void parts_free(jali_context *ctx, parts *p);
-/// The root of the part that holds the white pixel (x, y).
-int32_t part_at(parts *p, int32_t x, int32_t y);
+/// The label of the white pixel (x, y): its component's, or for a bridge that of where it was laid from.
+int32_t label_at(const parts *p, int32_t x, int32_t y);
+/// The root of the part with that label.
+int32_t root_of_label(parts *p, int32_t label);
 /// Take the smallest part (by area, then by label) out of the queue.
 int32_t smallest_part(parts *p);
-/// Give a part a run of bridge pixels.
-jali_status part_add_run(jali_context *ctx, parts *p, int32_t root, int32_t y, int32_t x0, int32_t x1);
+/// Give a part a bridge pixel.
+jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y);
 /// Make two parts one; returns the root.
 int32_t unite_parts(parts *p, int32_t a, int32_t b);
 /// Put a part (back) into the queue.

@@ -37,8 +37,8 @@ jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture,
     TRY(jali_bitmap_create(ctx, picture->width_px * factor, picture->height_px * factor, &reference->picture));
     resize_nearest(ctx, picture, 0, 0, picture->width_px, picture->height_px, &reference->picture);
     if (opt->recall) {
-        TRY(medial_axis(ctx, picture, true, true, &reference->axis_white));
-        TRY(medial_axis(ctx, picture, false, true, &reference->axis_black));
+        TRY(medial_axis(ctx, picture, true, true, 0, &reference->axis_white));
+        TRY(medial_axis(ctx, picture, false, true, 0, &reference->axis_black));
         reference->axis_white_count = count_white(ctx, &reference->axis_white);
         reference->axis_black_count = count_white(ctx, &reference->axis_black);
     }

@@ -4,7 +4,8 @@
 #include "raster/raster.h"
 #include "base/base.h"
 
-jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, jali_bitmap *axis)
+jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, int32_t rounds,
+                        jali_bitmap *axis)
 {
     jali_status status;
     jali_bitmap left = {0}, next = {0}, opened = {0};
@@ -16,7 +17,7 @@ jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, boo
     TRY(jali_bitmap_create(ctx, a->width_px, a->height_px, axis));
     TRY(element_square(ctx, 3, &square));
     if (!white) invert(ctx, &left, &left);
-    while (any_white(ctx, &left)) {
+    for (int32_t k = 0; (rounds == 0 || k < rounds) && any_white(ctx, &left); k++) {
         TRY(step(ctx, "medial axis", 0));
         TRY(erode(ctx, &left, &square, outside, &next));
         if (count_combined(ctx, RULE_XOR, &left, &next) == 0) break; // all of one tone: no boundary, no axis

@@ -22,19 +22,43 @@ jali_status element_square(jali_context *ctx, int32_t size, element *e)
     return status;
 }
 
-// In half pixels the rows lie at 0, 2, 4 ... (odd sizes) or 1, 3, 5 ... (even) and so do the columns.
-jali_status element_disc(jali_context *ctx, double diameter_px, element *e)
+// Pixels whose centre is within diameter / 2, cut to `size` rows and columns. In half pixels the rows lie at
+// 0, 2, 4 ... (odd sizes) or 1, 3, 5 ... (even) and so do the columns.
+static jali_status disc_rows(jali_context *ctx, int32_t size, double diameter, element *e)
 {
-    int32_t size = (int32_t)fmax(1, fmin(floor(diameter_px + 0.5), 1e6));
     jali_status status = element_rows(ctx, size, e);
     int32_t even = size % 2 == 0;
-    // A disc of its own size, should rounding have made the size larger than the diameter: its reach is whole.
-    double diameter = fmax(diameter_px, size);
     for (int32_t i = 0; i < e->rows; i++) {
         double row = 2 * i + even;
         double reach = sqrt(fmax(0, diameter * diameter - row * row)); // half pixels
         int32_t half = even ? (int32_t)floor((reach + 1) / 2) : (int32_t)floor(reach / 2);
         e->half[i] = MIN(MAX(half, even), size / 2);
+    }
+    return status;
+}
+
+jali_status element_disc(jali_context *ctx, double diameter_px, element *e)
+{
+    int32_t size = (int32_t)fmax(1, fmin(floor(diameter_px + 0.5), 1e6));
+    return disc_rows(ctx, size, fmax(diameter_px, size), e); // rounding up must not leave the last row empty
+}
+
+jali_status element_wide_disc(jali_context *ctx, int32_t size, element *e)
+{
+    return disc_rows(ctx, size, size + 0.5, e);
+}
+
+jali_status element_sum(jali_context *ctx, const element *a, const element *b, element *sum)
+{
+    int32_t even = a->size % 2 == 0;
+    jali_status status = element_rows(ctx, a->size + b->size - 1, sum);
+    for (int32_t i = 0; i < sum->rows; i++) {
+        sum->half[i] = even;
+        for (int32_t j = -(b->rows - 1); j < b->rows; j++) { // row i of the sum = row i - j of a and row j of b
+            int32_t row = i - j;
+            if (row < 0) row = -row - even;
+            if (row < a->rows) sum->half[i] = MAX(sum->half[i], a->half[row] + b->half[j < 0 ? -j : j]);
+        }
     }
     return status;
 }

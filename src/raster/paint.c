@@ -15,24 +15,84 @@ void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white)
     }
 }
 
+int32_t count_run(const jali_bitmap *a, int32_t y, int32_t x0, int32_t x1)
+{
+    const uint64_t *row = a->word + (int64_t)y * a->stride;
+    int32_t count = 0;
+    for (int32_t i = x0 >> 6; i <= (x1 - 1) >> 6; i++) {
+        uint64_t mask = ~UINT64_C(0);
+        if (i == x0 >> 6) mask &= ~UINT64_C(0) << (x0 & 63);
+        if (i == (x1 - 1) >> 6) mask &= ~UINT64_C(0) >> (63 - ((x1 - 1) & 63));
+        count += __builtin_popcountll(row[i] & mask);
+    }
+    return count;
+}
+
+uint64_t window_word(const jali_bitmap *a, int32_t x, int32_t y, bool outside)
+{
+    uint64_t beyond = outside ? ~UINT64_C(0) : 0;
+    if (y < 0 || y >= a->height_px || x < 0 || x >= a->width_px) return beyond;
+    uint64_t word = a->word[(int64_t)y * a->stride + (x >> 6)];
+    return a->width_px - x >= 64 ? word : word | (beyond & ~UINT64_C(0) << (a->width_px - x));
+}
+
+// The columns x0 .. x1-1 of row k of the element centred at (x, y); an empty range where it is cut off.
+static void element_row(const jali_bitmap *a, int32_t x, int32_t y, const element *e, int32_t k, int32_t span[3])
+{
+    int32_t even = e->size % 2 == 0, dy = k - e->size / 2;
+    int32_t half = e->half[abs(2 * dy + even) / 2];
+    bool inside = y + dy >= 0 && y + dy < a->height_px;
+    span[0] = y + dy;
+    span[1] = MAX(x - half, 0);
+    span[2] = inside ? MIN(x + half + 1 - even, a->width_px) : span[1];
+}
+
 void paint_element(jali_bitmap *dst, int32_t x, int32_t y, const element *brush, bool white)
 {
-    int32_t even = brush->size % 2 == 0;
     for (int32_t k = 0; k < brush->size; k++) {
-        int32_t dy = k - brush->size / 2;
-        int32_t half = brush->half[abs(2 * dy + even) / 2];
-        int32_t x0 = MAX(x - half, 0), x1 = MIN(x + half + 1 - even, dst->width_px);
-        if (y + dy >= 0 && y + dy < dst->height_px && x0 < x1) paint_run(dst, y + dy, x0, x1, white);
+        int32_t span[3];
+        element_row(dst, x, y, brush, k, span);
+        if (span[1] < span[2]) paint_run(dst, span[0], span[1], span[2], white);
     }
+}
+
+int32_t count_element(const jali_bitmap *a, int32_t x, int32_t y, const element *e, bool white)
+{
+    int32_t count = 0;
+    for (int32_t k = 0; k < e->size; k++) {
+        int32_t span[3];
+        element_row(a, x, y, e, k, span);
+        if (span[1] >= span[2]) continue;
+        int32_t found = count_run(a, span[0], span[1], span[2]);
+        count += white ? found : span[2] - span[1] - found;
+    }
+    return count;
+}
+
+line_walk walk_line(const int32_t from[2], const int32_t to[2])
+{
+    return (line_walk){.x = from[0], .y = from[1],
+                       .step_x = to[0] < from[0] ? -1 : 1, .step_y = to[1] < from[1] ? -1 : 1,
+                       .wide = llabs((int64_t)to[0] - from[0]), .high = llabs((int64_t)to[1] - from[1])};
+}
+
+bool walk_on(line_walk *w)
+{
+    if (w->gone_x == w->wide && w->gone_y == w->high) return false;
+    // Of the two next pixels the one nearer to the line: compare (gone_x + 1/2) / wide with (gone_y + 1/2) / high.
+    if (w->gone_y == w->high || (w->gone_x < w->wide && (2 * w->gone_x + 1) * w->high < (2 * w->gone_y + 1) * w->wide)) {
+        w->x += w->step_x;
+        w->gone_x++;
+    } else {
+        w->y += w->step_y;
+        w->gone_y++;
+    }
+    return true;
 }
 
 void paint_stroke(jali_bitmap *dst, const int32_t from[2], const int32_t to[2], const element *brush, bool white)
 {
-    int64_t dx = to[0] - from[0], dy = to[1] - from[1], count = MAX(llabs(dx), llabs(dy));
-    paint_element(dst, from[0], from[1], brush, white);
-    for (int64_t i = 1; i <= count; i++) {
-        int64_t half_x = dx < 0 ? -count : count, half_y = dy < 0 ? -count : count; // round half away from `from`
-        paint_element(dst, from[0] + (int32_t)((2 * i * dx + half_x) / (2 * count)),
-                      from[1] + (int32_t)((2 * i * dy + half_y) / (2 * count)), brush, white);
-    }
+    line_walk walk = walk_line(from, to);
+    do paint_element(dst, walk.x, walk.y, brush, white);
+    while (walk_on(&walk));
 }

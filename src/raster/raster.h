@@ -41,6 +41,11 @@ jali_status element_square(jali_context *ctx, int32_t size, element *e);
 /// All pixels whose centre lies within diameter_px / 2 of the centre; its size is the whole number nearest
 /// to diameter_px (at least 1), so that a bar `size` px wide just holds it.
 jali_status element_disc(jali_context *ctx, double diameter_px, element *e);
+/// The disc of `size` px with every pixel whose centre lies within a quarter of a pixel of it as well: what a
+/// finer grid would paint with a disc of that diameter fits into what this paints.
+jali_status element_wide_disc(jali_context *ctx, int32_t size, element *e);
+/// The Minkowski sum: painting with it is painting with `a`, then with the odd element `b`.
+jali_status element_sum(jali_context *ctx, const element *a, const element *b, element *sum);
 /// The octagon between: square of `size` px with corners cut at 45 degrees.
 jali_status element_octagon(jali_context *ctx, int32_t size, element *e);
 void element_free(jali_context *ctx, element *e);
@@ -67,7 +72,9 @@ void resize_nearest(jali_context *ctx, const jali_bitmap *src, int32_t left, int
 
 /// The centres of the maximal squares inside the white (or black) pixels: the ridge of the chessboard distance.
 /// Source: Lantuejoul's formula, the union over k of E_k - opening(E_k), E_k the k-fold 3 x 3 erosion.
-jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, jali_bitmap *axis);
+///   in     rounds   stop after so many erosions: the axis of features up to 2 * rounds px wide; 0 = of all
+jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, int32_t rounds,
+                        jali_bitmap *axis);
 
 // --- Components (components.c)
 
@@ -93,9 +100,24 @@ int32_t run_at(const components *c, int32_t x, int32_t y);
 jali_status component_areas(jali_context *ctx, const components *c, int64_t **area);
 /// Set the run's pixels in dst.
 void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white);
+/// White pixels in the row's columns x0 .. x1-1.
+int32_t count_run(const jali_bitmap *a, int32_t y, int32_t x0, int32_t x1);
+/// The 64 pixels of row y from column x (a multiple of 64, may be negative) on; `outside` beyond the bitmap.
+uint64_t window_word(const jali_bitmap *a, int32_t x, int32_t y, bool outside);
 /// Paint the element centred at (x, y), cut off at the bitmap's border.
 void paint_element(jali_bitmap *dst, int32_t x, int32_t y, const element *brush, bool white);
-/// Paint the element at each pixel of the straight line between two pixels.
+/// How many pixels of a tone lie under the element centred at (x, y); none beyond the bitmap's border.
+int32_t count_element(const jali_bitmap *a, int32_t x, int32_t y, const element *e, bool white);
+/// A walk from one pixel to another along the 4-connected path nearest to the straight line.
+typedef struct line_walk {
+    int32_t x, y;             // where it is
+    int32_t step_x, step_y;
+    int64_t wide, high, gone_x, gone_y;
+} line_walk;
+line_walk walk_line(const int32_t from[2], const int32_t to[2]);
+/// One step on; false at the end.
+bool walk_on(line_walk *w);
+/// Paint the element at each pixel of that walk.
 void paint_stroke(jali_bitmap *dst, const int32_t from[2], const int32_t to[2], const element *brush, bool white);
 
 #endif

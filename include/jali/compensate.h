@@ -1,0 +1,26 @@
+// Compensate: take off the solid what the printer will add (Eq. 1).
+#ifndef JALI_COMPENSATE_H
+#define JALI_COMPENSATE_H
+
+#include <jali/adapt.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct jali_compensate_options {
+    jali_shape shape;    // disc, or the paper's square
+    int32_t size_px;     // omega_c, odd: the solid loses (size_px - 1) / 2 at each edge; 1 changes nothing
+    bool outside_solid;
+} jali_compensate_options;
+
+/// I' = I eroded by S_C.
+///   out    thinned   a new bitmap
+///   fails  JALI_NO_MEMORY, JALI_BAD_VALUE (even size)
+JALI_API jali_status jali_compensate(jali_context *ctx, const jali_bitmap *picture,
+                                     const jali_compensate_options *opt, jali_bitmap *thinned);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
