@@ -69,7 +69,7 @@ typedef struct jali_stamp_report {
 /// The sum is a whole number and falls with each disc that stays, so the search ends.
 ///   in     drawing   what the print should look like, margin included
 ///   out    print     a new bitmap: how the print comes out, growth included (jali_compensate gives the mask)
-///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_BAD_VALUE (printed widths above 25 px)
+///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_BAD_VALUE
 JALI_API jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, const jali_adapt_options *opt,
                                       jali_bitmap *print, jali_stamp_report *report);
 
@@ -91,9 +91,8 @@ JALI_API jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_option
                                       jali_bitmap *mask, jali_bitmap *cores);
 
 /// Paint the bridges between cores solid_px wide, then fill voids narrower than void_px.
-///   out    changed   whether the mask is not what it was before
 JALI_API jali_status jali_adapt_lay(jali_context *ctx, const jali_bridges *bridges, const jali_adapt_options *opt,
-                                    jali_bitmap *mask, bool *changed);
+                                    jali_bitmap *mask);
 
 #ifdef __cplusplus
 }

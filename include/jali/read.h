@@ -2,7 +2,7 @@
 #ifndef JALI_READ_H
 #define JALI_READ_H
 
-#include <jali/base.h>
+#include <jali/bitmap.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -68,6 +68,10 @@ JALI_API jali_threshold_options jali_threshold_defaults(void);
 ///   cost   O(pixels); LOCAL needs a second byte a pixel
 JALI_API jali_status jali_threshold(jali_context *ctx, jali_picture *picture,
                                     const jali_threshold_options *opt, int32_t *threshold);
+
+/// The picture in black and white at its own resolution: white is grey >= threshold.
+JALI_API jali_status jali_binarise(jali_context *ctx, const jali_picture *picture, int32_t threshold,
+                                   jali_bitmap *bitmap);
 
 #ifdef __cplusplus
 }

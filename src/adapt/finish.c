@@ -71,20 +71,17 @@ done:
 }
 
 jali_status jali_adapt_lay(jali_context *ctx, const jali_bridges *bridges, const jali_adapt_options *opt,
-                           jali_bitmap *mask, bool *changed)
+                           jali_bitmap *mask)
 {
     jali_status status;
     element solid = {0}, hollow = {0};
-    jali_bitmap before = {0}, scratch = {0};
+    jali_bitmap scratch = {0};
     TRY(mask_elements(ctx, opt, &solid, &hollow));
-    TRY(jali_bitmap_copy(ctx, mask, &before));
     TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, &scratch));
     for (int32_t i = 0; i < bridges->count; i++)
         paint_stroke(mask, bridges->bridge[i].from, bridges->bridge[i].to, &solid, true);
     TRY(close_by(ctx, mask, &hollow, opt->outside_solid, &scratch, mask));
-    *changed = count_combined(ctx, RULE_XOR, mask, &before) != 0;
 done:
-    jali_bitmap_free(ctx, &before);
     jali_bitmap_free(ctx, &scratch);
     element_free(ctx, &solid);
     element_free(ctx, &hollow);

@@ -69,11 +69,20 @@ static jali_status size_on_plate(jali_context *ctx, const jali_picture *picture,
     return JALI_OK;
 }
 
+// The coarsest pixel of which the smaller width holds at least 8 and the growth of an edge, phi_e / 2, a whole
+// number: then the compensation is exact. A growth so small that this needs more than 16 a width is rounded.
+static double automatic_pixel(const jali_place_options *opt)
+{
+    double width_mm = MIN(opt->phi_s_mm, opt->phi_v_mm), growth_mm = opt->phi_e_mm / 2;
+    double coarsest = width_mm / px_a_feature;
+    double fitting = growth_mm > 0 ? growth_mm / ceil(growth_mm / coarsest - 1e-9) : 0;
+    return fitting >= coarsest / 2 ? fitting : coarsest;
+}
+
 static double pixel_size(const jali_picture *picture, const jali_place_options *opt, double width_mm)
 {
     if (opt->paper) return width_mm / picture->width_px;
-    if (opt->pixel_mm > 0) return opt->pixel_mm;
-    return MIN(opt->phi_s_mm, opt->phi_v_mm) / px_a_feature;
+    return opt->pixel_mm > 0 ? opt->pixel_mm : automatic_pixel(opt);
 }
 
 // Morphology near the border reaches twice the wider element and what the compensation takes.
@@ -114,7 +123,7 @@ static jali_status choose_grid(jali_context *ctx, const jali_picture *picture, c
     jali_status status;
     double pixel_mm = pixel_size(picture, opt, size_mm[0]);
     double margin = opt->frame_mm > 0 ? ceil(margin_mm(opt) / pixel_mm) + 2 : 0;
-    double columns = opt->paper ? picture->width_px : MAX(ceil(size_mm[0] / pixel_mm - 1e-9), 1);
+    double columns = opt->paper ? picture->width_px : MAX(floor(size_mm[0] / pixel_mm + 1e-9), 1);
     double rows = opt->paper ? picture->height_px
                              : MAX(floor(columns * picture->height_px / picture->width_px + 0.5), 1);
     TRY(check_grid(ctx, columns + 2 * margin, rows + 2 * margin, pixel_mm));

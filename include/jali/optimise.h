@@ -1,0 +1,66 @@
+// Optimise: the image method whole, Algorithms 1 and 3 over the stages connect, compensate and adapt.
+#ifndef JALI_OPTIMISE_H
+#define JALI_OPTIMISE_H
+
+#include <jali/adapt.h>
+#include <jali/bridges.h>
+#include <jali/chart.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct jali_optimise_options {
+    double phi_e_mm;        // how much wider a solid bar prints than drawn, >= 0 (0.1)
+    double phi_s_mm;        // narrowest solid that prints, > 0 (0.3)
+    double phi_v_mm;        // narrowest void that prints, > 0 (0.5)
+    double epsilon_mm;      // a thin tip longer than this counts as a feature, >= 0 (4)
+    bool paper;             // the paper's method: square elements, Table 1's kernels, its rounds
+    int32_t kernels_px[3];  // omega_c, omega_w, omega_b; 0 (default) = from the three figures above
+    int32_t most_rounds;    // of Algorithm 3, >= 1 (8); recall gains nothing after 6 to 8
+    double axis_worth;      // see jali_adapt_options (0.42)
+    bool details;           // keep the details and conflicts for overlays and counts (costs a third more time)
+} jali_optimise_options;
+
+JALI_API jali_optimise_options jali_optimise_defaults(void);
+
+/// What one round of adaption found.
+typedef struct jali_round {
+    int32_t white[JALI_TYPES], black[JALI_TYPES]; // details of each type
+    int32_t conflicts;                            // regions
+} jali_round;
+
+typedef struct jali_optimised {
+    jali_bitmap mask;             // what to carve: one 4-connected piece, nothing below the widths
+    int32_t kernels_px[3];        // omega_c, omega_w, omega_b as used
+    int32_t bridges, pieces_dropped;
+    int64_t bridge_pixels;
+    int32_t round_count;
+    jali_round *round;            // [round_count]
+    jali_round residual;          // details left in the mask: types A and B are zero
+    bool cycled;                  // the paper's rounds came back to an earlier picture and were stopped
+    // With `details`, for overlays:
+    jali_details white, black;    // of the first round
+    jali_bitmap conflict;
+    jali_bitmap bridge_mask;      // pixels that the bridges of the result made white
+} jali_optimised;
+
+JALI_API void jali_optimised_free(jali_context *ctx, jali_optimised *result);
+
+/// omega_c, omega_w, omega_b as in Table 1, from phi in mm and the pixel in mm (docs/conventions.md).
+JALI_API void jali_paper_kernels(double phi_e_mm, double phi_s_mm, double phi_v_mm, double pixel_mm,
+                                 int32_t kernels_px[3]);
+
+/// Optimise a drawing for the printer.
+///   in     drawing   on the chart's working grid, margin included
+///          opt       NULL means the defaults
+///   out    result    free with jali_optimised_free
+///   fails  JALI_NO_RESULT (nothing of the picture is wide enough to print), JALI_BAD_VALUE, JALI_NO_MEMORY,
+///          JALI_CANCELLED, JALI_LIMIT
+JALI_API jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,
+                                   const jali_optimise_options *opt, jali_optimised *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,336 @@
+// The image method: from a drawing to a mask that prints as one piece.
+//
+// Source:  Binary Image Carving for 3D Printing, section 4, Algorithms 1 and 3.
+// Two ways through the same stages:
+//   --paper  Algorithm 1 to the letter: connect, compensate, then Algorithm 3's rounds on the input's grid with
+//            square elements. As written the rounds need not end (34 of 74 runs go round in circles), so they stop
+//            after most_rounds or when a picture comes back, and the finish settles what is left.
+//   default  the print is designed first, in the widths it will have (jali_adapt_print: the owner of each
+//            conflict is whoever leaves the smaller predicted error), pieces that are not worth their bridges go,
+//            then the mask is the print less what the printer adds, and the finish joins it.
+// Ends:    rounds are counted; the finish only adds solid after its first round (src/adapt/finish.c).
+// Checked: tests/test_optimise.c; docs/results.md on 24 runs over real pictures.
+#include <jali/compensate.h>
+#include <jali/connect.h>
+#include <jali/optimise.h>
+#include "raster/raster.h"
+#include "base/base.h"
+
+#include <math.h>
+
+// A width that misses a whole number of pixels by less is that number: 0.3 mm are 12 px of 0.02501 mm.
+static const double WIDTH_TOLERANCE_PX = 0.01;
+
+jali_optimise_options jali_optimise_defaults(void)
+{
+    return (jali_optimise_options){.phi_e_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .epsilon_mm = 4,
+                                   .most_rounds = 8, .axis_worth = jali_adapt_defaults().axis_worth};
+}
+
+void jali_optimised_free(jali_context *ctx, jali_optimised *result)
+{
+    jali_bitmap_free(ctx, &result->mask);
+    jali_bitmap_free(ctx, &result->conflict);
+    jali_bitmap_free(ctx, &result->bridge_mask);
+    jali_details_free(ctx, &result->white);
+    jali_details_free(ctx, &result->black);
+    release(ctx, result->round);
+    *result = (jali_optimised){0};
+}
+
+static int32_t odd(double n)
+{
+    return (int32_t)n | 1;
+}
+
+static double nearest_half_down(double x)
+{
+    return ceil(x - 0.5 - 1e-9);
+}
+
+// Eq. 1 and section 4.3, in the reading that gives all of Table 1: omega_c = max(3, odd(ceil(r / 2) + 2)) with
+// r = phi_e / pixel rounded, omega_w and omega_b = the rounded widths made odd.
+void jali_paper_kernels(double phi_e_mm, double phi_s_mm, double phi_v_mm, double pixel_mm, int32_t kernels_px[3])
+{
+    kernels_px[0] = MAX(3, odd(ceil(nearest_half_down(phi_e_mm / pixel_mm) / 2) + 2));
+    kernels_px[1] = MAX(1, odd(nearest_half_down(phi_s_mm / pixel_mm)));
+    kernels_px[2] = MAX(1, odd(nearest_half_down(phi_v_mm / pixel_mm)));
+}
+
+// On the working grid: the growth to the nearest pixel a side, the widths never less than asked for.
+static void exact_kernels(const jali_optimise_options *opt, double pixel_mm, int32_t kernels_px[3])
+{
+    kernels_px[0] = 1 + 2 * (int32_t)floor(opt->phi_e_mm / 2 / pixel_mm + 0.5);
+    kernels_px[1] = MAX(1, (int32_t)ceil(opt->phi_s_mm / pixel_mm - WIDTH_TOLERANCE_PX));
+    kernels_px[2] = MAX(1, (int32_t)ceil(opt->phi_v_mm / pixel_mm - WIDTH_TOLERANCE_PX));
+}
+
+static jali_status check_positive(jali_context *ctx, const char *name, double mm, bool zero_allowed)
+{
+    if (mm > 0 && mm <= 1000) return JALI_OK;
+    if (zero_allowed && mm == 0) return JALI_OK;
+    return fail(ctx, JALI_BAD_VALUE, "%s is %g mm; %s 1000 mm is accepted", name, mm,
+                zero_allowed ? "0 to" : "more than 0 and up to");
+}
+
+static jali_status choose_kernels(jali_context *ctx, const jali_optimise_options *opt, const jali_chart *chart,
+                                  int32_t kernels_px[3])
+{
+    jali_status status;
+    TRY(check_positive(ctx, "phi_e", opt->phi_e_mm, true));
+    TRY(check_positive(ctx, "phi_s", opt->phi_s_mm, false));
+    TRY(check_positive(ctx, "phi_v", opt->phi_v_mm, false));
+    TRY(check_positive(ctx, "epsilon", opt->epsilon_mm, true));
+    double pixel_mm = jali_chart_pixel_mm(chart);
+    if (opt->paper) jali_paper_kernels(opt->phi_e_mm, opt->phi_s_mm, opt->phi_v_mm, pixel_mm, kernels_px);
+    else exact_kernels(opt, pixel_mm, kernels_px);
+    for (int32_t i = 0; i < 3; i++)
+        if (opt->kernels_px[i]) kernels_px[i] = opt->kernels_px[i];
+    if (kernels_px[0] < 1 || kernels_px[0] % 2 == 0 || kernels_px[1] < 1 || kernels_px[2] < 1 ||
+        MAX(kernels_px[0], MAX(kernels_px[1], kernels_px[2])) > 4000)
+        return fail(ctx, JALI_BAD_VALUE,
+                    "kernels of %d, %d and %d px: omega_c must be odd and all three from 1 to 4000 px", kernels_px[0],
+                    kernels_px[1], kernels_px[2]);
+done:
+    return status;
+}
+
+// --- Rounds
+
+typedef struct optimising {
+    const jali_chart *chart;
+    jali_optimise_options opt;
+    jali_adapt_options widths;   // of the mask
+    jali_metric metric;
+    size_t round_capacity;
+    jali_optimised *result;
+} optimising;
+
+static jali_status record_round(jali_context *ctx, optimising *o, const jali_details *white,
+                                const jali_details *black, int32_t conflicts)
+{
+    jali_optimised *r = o->result;
+    jali_status status = GROW(ctx, r->round, o->round_capacity, r->round_count + 1);
+    if (status != JALI_OK) return status;
+    jali_round *round = &r->round[r->round_count++];
+    memcpy(round->white, white->count, sizeof round->white);
+    memcpy(round->black, black->count, sizeof round->black);
+    round->conflicts = conflicts;
+    return JALI_OK;
+}
+
+// Look at a picture once: details of both tones and their conflicts, recorded, kept for overlays when first.
+static jali_status look(jali_context *ctx, optimising *o, const jali_bitmap *picture, const jali_adapt_options *widths,
+                        jali_details *white, jali_details *black, jali_bitmap *conflict)
+{
+    jali_status status;
+    int32_t regions = 0;
+    TRY(jali_adapt_details(ctx, picture, true, widths, white));
+    TRY(jali_adapt_details(ctx, picture, false, widths, black));
+    TRY(jali_adapt_conflicts(ctx, white, black, widths, conflict, &regions));
+    TRY(record_round(ctx, o, white, black, regions));
+done:
+    return status;
+}
+
+static bool anything_to_treat(const jali_details *details)
+{
+    return details->count[JALI_TYPE_A] + details->count[JALI_TYPE_B] > 0;
+}
+
+static uint64_t hash_of(const jali_bitmap *a)
+{
+    uint64_t hash = UINT64_C(14695981039346656037); // FNV-1a, a word at a time
+    for (int64_t i = 0; i < a->stride * a->height_px; i++) hash = (hash ^ a->word[i]) * UINT64_C(1099511628211);
+    return hash;
+}
+
+// The first round's findings stay for overlays; those of later rounds go.
+static void keep_or_drop(jali_context *ctx, optimising *o, jali_details *white, jali_details *black, jali_bitmap *conflict)
+{
+    jali_optimised *r = o->result;
+    if (o->opt.details && r->round_count == 1) {
+        r->white = *white;
+        r->black = *black;
+        r->conflict = *conflict;
+        *white = *black = (jali_details){0};
+        *conflict = (jali_bitmap){0};
+    }
+    jali_details_free(ctx, white);
+    jali_details_free(ctx, black);
+    jali_bitmap_free(ctx, conflict);
+}
+
+// Algorithm 3: connect, find details and conflicts, settle and grow them, until there is nothing to treat.
+static jali_status adapt_in_rounds(jali_context *ctx, optimising *o, jali_bitmap *picture)
+{
+    jali_status status = JALI_OK;
+    jali_details white = {0}, black = {0};
+    jali_bitmap conflict = {0};
+    uint64_t *seen = NULL;
+    jali_connect_options connect = {o->metric};
+    TRY(ALLOCATE(ctx, seen, o->opt.most_rounds));
+    for (int32_t round = 0; round < o->opt.most_rounds; round++) {
+        TRY(step(ctx, "adapt", (double)round / o->opt.most_rounds));
+        TRY(jali_connect(ctx, picture, &connect, picture, NULL));
+        seen[round] = hash_of(picture);
+        for (int32_t i = 0; i < round; i++) o->result->cycled |= seen[i] == seen[round];
+        if (o->result->cycled) break;
+        TRY(look(ctx, o, picture, &o->widths, &white, &black, &conflict));
+        if (!anything_to_treat(&white) && !anything_to_treat(&black)) break;
+        TRY(jali_adapt_round(ctx, &white, &black, &conflict, picture));
+        keep_or_drop(ctx, o, &white, &black, &conflict);
+    }
+done:
+    keep_or_drop(ctx, o, &white, &black, &conflict);
+    release(ctx, seen);
+    return status;
+}
+
+// --- The finish: one piece, nothing thinner than the widths, no neck either
+
+static jali_status finish(jali_context *ctx, optimising *o, jali_bitmap *mask)
+{
+    jali_status status;
+    jali_bitmap cores = {0}, before = {0};
+    jali_bridges bridges = {0};
+    jali_connect_options connect = {o->metric};
+    jali_optimised *r = o->result;
+    bool changed = true;
+    for (int32_t round = 0; changed; round++) {
+        TRY(step(ctx, "finish", 0));
+        TRY(jali_bitmap_copy(ctx, mask, &before));
+        TRY(jali_adapt_cores(ctx, &o->widths, round > 0, mask, &cores));
+        if (round == 0) {
+            r->bridge_pixels = -count_white(ctx, mask);
+            if (o->opt.details) TRY(jali_bitmap_copy(ctx, mask, &r->bridge_mask));
+        }
+        TRY(jali_connect(ctx, &cores, &connect, &cores, &bridges));
+        TRY(jali_adapt_lay(ctx, &bridges, &o->widths, mask));
+        r->bridges += bridges.count;
+        changed = count_combined(ctx, RULE_XOR, mask, &before) > 0;
+        jali_bridges_free(ctx, &bridges);
+        jali_bitmap_free(ctx, &cores);
+        jali_bitmap_free(ctx, &before);
+    }
+    r->bridge_pixels += count_white(ctx, mask);
+    if (o->opt.details) combine(ctx, RULE_XOR, &r->bridge_mask, mask, &r->bridge_mask);
+done:
+    jali_bridges_free(ctx, &bridges);
+    jali_bitmap_free(ctx, &cores);
+    jali_bitmap_free(ctx, &before);
+    return status;
+}
+
+// What the finish left: types A and B must be none.
+static jali_status count_residual(jali_context *ctx, optimising *o, const jali_bitmap *mask)
+{
+    jali_status status;
+    jali_details white = {0}, black = {0};
+    TRY(jali_adapt_details(ctx, mask, true, &o->widths, &white));
+    TRY(jali_adapt_details(ctx, mask, false, &o->widths, &black));
+    memcpy(o->result->residual.white, white.count, sizeof white.count);
+    memcpy(o->result->residual.black, black.count, sizeof black.count);
+done:
+    jali_details_free(ctx, &white);
+    jali_details_free(ctx, &black);
+    return status;
+}
+
+// --- The two ways
+
+// Algorithm 1 as printed.
+static jali_status by_the_paper(jali_context *ctx, optimising *o, const jali_bitmap *drawing, jali_bitmap *mask)
+{
+    jali_status status;
+    jali_bitmap joined = {0};
+    jali_connect_options connect = {o->metric};
+    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid};
+    TRY(jali_connect(ctx, drawing, &connect, &joined, NULL));
+    TRY(jali_compensate(ctx, &joined, &compensate, mask));
+    TRY(adapt_in_rounds(ctx, o, mask));
+done:
+    jali_bitmap_free(ctx, &joined);
+    return status;
+}
+
+// Details of the drawing, as an overlay: widths are those of the print.
+static jali_status look_at_drawing(jali_context *ctx, optimising *o, const jali_bitmap *drawing)
+{
+    jali_details white = {0}, black = {0};
+    jali_bitmap conflict = {0};
+    jali_adapt_options printed = o->widths;
+    printed.growth_px = 1;
+    printed.solid_px = o->widths.solid_px + o->widths.growth_px - 1;
+    printed.void_px = MAX(o->widths.void_px - o->widths.growth_px + 1, 1);
+    jali_status status = look(ctx, o, drawing, &printed, &white, &black, &conflict);
+    keep_or_drop(ctx, o, &white, &black, &conflict);
+    return status;
+}
+
+static jali_status by_design_of_the_print(jali_context *ctx, optimising *o, const jali_bitmap *drawing,
+                                          jali_bitmap *mask)
+{
+    jali_status status;
+    jali_bitmap print = {0}, joined = {0};
+    jali_bridges bridges = {0};
+    jali_stamp_report report;
+    jali_connect_options connect = {o->metric};
+    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid};
+    if (o->opt.details) TRY(look_at_drawing(ctx, o, drawing));
+    TRY(jali_adapt_print(ctx, drawing, &o->widths, &print, &report));
+    TRY(jali_connect(ctx, &print, &connect, &joined, &bridges));
+    TRY(jali_adapt_prune(ctx, drawing, &bridges, &o->widths, &print, &o->result->pieces_dropped));
+    TRY(jali_compensate(ctx, &print, &compensate, mask));
+done:
+    jali_bridges_free(ctx, &bridges);
+    jali_bitmap_free(ctx, &print);
+    jali_bitmap_free(ctx, &joined);
+    return status;
+}
+
+static jali_status prepare(jali_context *ctx, optimising *o)
+{
+    jali_status status;
+    int32_t *kernels = o->result->kernels_px;
+    TRY(choose_kernels(ctx, &o->opt, o->chart, kernels));
+    if (o->opt.most_rounds < 1 || o->opt.most_rounds > 1000)
+        return fail(ctx, JALI_BAD_VALUE, "at most %d rounds were asked for; 1 to 1000 is accepted", o->opt.most_rounds);
+    o->metric = o->opt.paper ? JALI_METRIC_CITY_BLOCK : JALI_METRIC_OCTAGON;
+    o->widths = jali_adapt_defaults();
+    o->widths.shape = o->opt.paper ? JALI_SHAPE_SQUARE : JALI_SHAPE_DISC;
+    o->widths.solid_px = kernels[1];
+    o->widths.void_px = kernels[2];
+    o->widths.growth_px = o->opt.paper ? 1 : kernels[0];
+    o->widths.epsilon_px = (int32_t)floor(o->opt.epsilon_mm / jali_chart_pixel_mm(o->chart));
+    o->widths.isolated_matters = !o->opt.paper;
+    o->widths.outside_solid = o->chart->outside_solid;
+    o->widths.axis_worth = o->opt.axis_worth;
+done:
+    return status;
+}
+
+static jali_status check_something_left(jali_context *ctx, const optimising *o, const jali_bitmap *mask)
+{
+    if (any_white(ctx, mask)) return JALI_OK;
+    return fail(ctx, JALI_NO_RESULT,
+                "nothing of the picture is wide enough to print: no solid of %.3g mm is left; a larger size, a finer "
+                "printer or a frame would help", o->opt.phi_s_mm);
+}
+
+jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,
+                          const jali_optimise_options *given, jali_optimised *result)
+{
+    jali_status status;
+    optimising o = {.chart = chart, .opt = given ? *given : jali_optimise_defaults(), .result = result};
+    *result = (jali_optimised){0};
+    TRY(prepare(ctx, &o));
+    TRY(o.opt.paper ? by_the_paper(ctx, &o, drawing, &result->mask)
+                    : by_design_of_the_print(ctx, &o, drawing, &result->mask));
+    TRY(finish(ctx, &o, &result->mask));
+    TRY(check_something_left(ctx, &o, &result->mask));
+    TRY(count_residual(ctx, &o, &result->mask));
+done:
+    if (status != JALI_OK) jali_optimised_free(ctx, result);
+    return status;
+}
