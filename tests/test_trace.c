@@ -209,7 +209,7 @@ TEST(straight_bands_have_few_points)
         jali_contours contours;
         check_trace(&bitmap, false, &contours);
         print_message("band %d: %d points\n", degrees, contours.point_count);
-        CHECK(contours.point_count <= 40);
+        CHECK(contours.point_count <= 24);
         jali_contours_free(ctx, &contours);
         jali_bitmap_free(ctx, &bitmap);
     }

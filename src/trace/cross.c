@@ -93,12 +93,12 @@ static crossing cross_one(const crack *c, passage p, int32_t unit, int32_t slack
 {
     int32_t half = unit / 2, most = half - 1;
     int32_t offset = (int32_t)lround(MIN(MAX(p.offset * unit, -most), most));
-    int32_t room = (int32_t)MIN(slack * p.stretch, unit);
+    int32_t room = (int32_t)MIN(slack * p.stretch, unit) + 1;
     int across = !(c->direction & 1), left = c->direction == 0 || c->direction == 3 ? 1 : -1;
     crossing fine = {{(int32_t)lround(c->x * unit), (int32_t)lround(c->y * unit)}, 0, 0, c->direction};
     int32_t middle = fine.at[across];
-    fine.left = middle + left * MIN(offset + room, most);
-    fine.right = middle + left * MAX(offset - room, -most);
+    fine.left = middle + left * MIN(offset + room, half);
+    fine.right = middle + left * MAX(offset - room, -half);
     fine.at[across] = middle + left * offset;
     return fine;
 }

@@ -39,6 +39,8 @@ typedef struct outline {
     double *cost;            // [n + 1] least cost of reaching a turn
     int32_t *from;           // [n + 1] and from which turn
     int32_t *vertex;         // [vertex_count] turns that are vertices of the polygon, in order
+    double (*line)[4];       // [vertex_count] line of the edge after each vertex: a point, px from the vertex's
+                             // turn, and a direction
     double (*place)[2];      // [vertex_count] where each vertex lies, px
     bool *corner;            // [vertex_count] whether the contour has a corner there
     int32_t vertex_count;    // <= n
@@ -54,7 +56,7 @@ void fit_vertices(outline *o);
 /// a corner of its own.
 typedef struct crossing {
     int32_t at[2];           // lattice
-    int32_t left, right;     // where the contour may cross instead: ends on the solid's and the void's side
+    int32_t left, right;     // where else the contour may cross: strictly between these, the solid's side first
     int8_t direction;        // of the crack: 0 = +x, 1 = +y, 2 = -x, 3 = -y; CORNER = no crack
 } crossing;
 

@@ -16,7 +16,10 @@ enum {
     EDGE_TURNS = 512,
     SQUARE_RUN_PX = 3, // two perpendicular runs this long do not occur on a smooth curve of radius over 3 px
     RESEAT_TURNS = 6,
+    STRAIGHT_TURNS = 8, // shorter edges need no check of their centres
 };
+
+static const double CENTRE_ROOM_PX = 0.04; // between a line and the nearest pixel centre
 
 static const double REACH_PX = 1.5; // how far a vertex may lie from its turn
 
@@ -105,26 +108,93 @@ void best_polygon(outline *o)
 // A quadratic form: squared distance from a line, as v^T Q v with v = (x, y, 1).
 typedef struct form { double xx, xy, yy, x, y, c; } form;
 
-// Add the squared distance from the line fitted to the cracks between turns i and k; relative to `centre`.
-static void add_line(const outline *o, int32_t i, int32_t k, const turn *centre, form *q)
+// The least-squares line of the cracks between turns i and end, seen from turn i: a middle point and a
+// direction, of unit length.
+static void fit_line(const outline *o, int32_t i, int32_t end, double middle[2], double along[2])
 {
     sums s = {0};
-    int32_t end = k <= i ? k + o->n : k;
-    for (int32_t j = i; j < end; j++) add_run(&s, centre, turn_at(o, j), turn_at(o, j + 1));
-    double mx = s.x / s.n, my = s.y / s.n;
-    double a = s.xx / s.n - mx * mx, b = s.xy / s.n - mx * my, c = s.yy / s.n - my * my;
-    double nx, ny, largest = 0.5 * (a + c + sqrt((a - c) * (a - c) + 4 * b * b));
-    // The normal of the principal axis; a single crack has none, its chord serves.
-    if (fabs(a - largest) >= fabs(c - largest)) nx = a - largest, ny = b;
-    else nx = b, ny = c - largest;
-    if (nx * nx + ny * ny < 1e-12) {
-        const turn *from = turn_at(o, i), *to = turn_at(o, end);
-        nx = from->y - to->y, ny = to->x - from->x;
+    for (int32_t j = i; j < end; j++) add_run(&s, turn_at(o, i), turn_at(o, j), turn_at(o, j + 1));
+    middle[0] = s.x / s.n, middle[1] = s.y / s.n;
+    double a = s.xx / s.n - middle[0] * middle[0], b = s.xy / s.n - middle[0] * middle[1];
+    double c = s.yy / s.n - middle[1] * middle[1];
+    double largest = 0.5 * (a + c + sqrt((a - c) * (a - c) + 4 * b * b));
+    const turn *from = turn_at(o, i), *to = turn_at(o, end);
+    double chord[2] = {to->x - from->x, to->y - from->y}, length;
+    // The principal axis; a single crack has none, its chord serves.
+    if (largest - c >= largest - a) along[0] = largest - c, along[1] = b;
+    else along[0] = b, along[1] = largest - a;
+    length = hypot(along[0], along[1]);
+    if (length < 1e-6) along[0] = chord[0], along[1] = chord[1], length = hypot(chord[0], chord[1]);
+    if (along[0] * chord[0] + along[1] * chord[1] < 0) length = -length;
+    along[0] /= length;
+    along[1] /= length;
+}
+
+// In the frame of a line: how the room between the solid centres on its left and the void ones on its right
+// lies once the line is turned by `tilt`.
+typedef struct room { double left, right, left_at, right_at; } room; // heights over the line, and where along it
+
+static inline void narrow(room *r, const double middle[2], const double along[2], double tilt, double x, double y,
+                          double side)
+{
+    x -= middle[0], y -= middle[1];
+    double u = along[0] * x + along[1] * y;
+    double w = along[0] * y - along[1] * x - tilt * u;
+    if (side > 0 && w < r->left) r->left = w, r->left_at = u;
+    if (side < 0 && w > r->right) r->right = w, r->right_at = u;
+}
+
+static room room_beside(const outline *o, int32_t i, int32_t end, const double middle[2], const double along[2],
+                        double tilt)
+{
+    room r = {INFINITY, -INFINITY, 0, 0};
+    const turn *from = turn_at(o, i);
+    for (int32_t j = i; j < end; j++) { // the first and the last crack of each run
+        const turn *a = turn_at(o, j), *b = turn_at(o, j + 1);
+        double dx = (b->x > a->x) - (b->x < a->x), dy = (b->y > a->y) - (b->y < a->y);
+        double ax = a->x - from->x + 0.5 * dx, ay = a->y - from->y + 0.5 * dy;
+        double bx = b->x - from->x - 0.5 * dx, by = b->y - from->y - 0.5 * dy;
+        narrow(&r, middle, along, tilt, ax - 0.5 * dy, ay + 0.5 * dx, 1);
+        narrow(&r, middle, along, tilt, bx - 0.5 * dy, by + 0.5 * dx, 1);
+        narrow(&r, middle, along, tilt, ax + 0.5 * dy, ay - 0.5 * dx, -1);
+        narrow(&r, middle, along, tilt, bx + 0.5 * dy, by - 0.5 * dx, -1);
     }
-    double length = sqrt(nx * nx + ny * ny);
-    nx /= length;
-    ny /= length;
-    double offset = -(nx * mx + ny * my);
+    return r;
+}
+
+// Pixels of a straight edge leave a narrow band of lines that keep every centre on its side; the least-squares
+// line can miss it. Then take the middle of the band, if there is one. The room is a concave function of the
+// tilt, so bisection finds its largest.
+static void keep_centres(const outline *o, int32_t i, int32_t end, double middle[2], double along[2])
+{
+    if (end - i < STRAIGHT_TURNS) return;
+    room r = room_beside(o, i, end, middle, along, 0);
+    if (r.left > CENTRE_ROOM_PX && r.right < -CENTRE_ROOM_PX) return;
+    const turn *from = turn_at(o, i), *to = turn_at(o, end);
+    double most = 2 / hypot(to->x - from->x, to->y - from->y), low = -most, high = most, best = 0, best_tilt = 0;
+    double best_height = 0;
+    for (int step = 0; step < 24; step++) {
+        double tilt = 0.5 * (low + high);
+        r = room_beside(o, i, end, middle, along, tilt);
+        if (r.left - r.right > best) best = r.left - r.right, best_tilt = tilt, best_height = 0.5 * (r.left + r.right);
+        if (r.right_at > r.left_at) low = tilt;
+        else high = tilt;
+    }
+    if (best <= 0) return;
+    double x = along[0] - best_tilt * along[1], y = along[1] + best_tilt * along[0], length = hypot(x, y);
+    middle[0] -= best_height * along[1];
+    middle[1] += best_height * along[0];
+    along[0] = x / length;
+    along[1] = y / length;
+}
+
+// The squared distance from the line of edge v, seen from `centre`.
+static void add_line(const outline *o, int32_t v, const turn *centre, form *q)
+{
+    const double *line = o->line[v];
+    const turn *from = &o->turn[o->vertex[v]];
+    double nx = -line[3], ny = line[2];
+    double offset = -(nx * (line[0] + from->x - centre->x) + ny * (line[1] + from->y - centre->y));
     q->xx += nx * nx, q->xy += nx * ny, q->yy += ny * ny;
     q->x += nx * offset, q->y += ny * offset, q->c += offset * offset;
 }
@@ -172,12 +242,17 @@ static int32_t nearest_turn(const outline *o, int32_t before, int32_t here, int3
 void fit_vertices(outline *o)
 {
     for (int32_t v = 0; v < o->vertex_count; v++) {
-        int32_t here = o->vertex[v], before = o->vertex[v == 0 ? o->vertex_count - 1 : v - 1];
-        int32_t after = o->vertex[v + 1 == o->vertex_count ? 0 : v + 1];
+        int32_t from = o->vertex[v], to = o->vertex[v + 1 == o->vertex_count ? 0 : v + 1];
+        if (to <= from) to += o->n;
+        fit_line(o, from, to, o->line[v], o->line[v] + 2);
+        keep_centres(o, from, to, o->line[v], o->line[v] + 2);
+    }
+    for (int32_t v = 0; v < o->vertex_count; v++) {
+        int32_t here = o->vertex[v];
         const turn *centre = &o->turn[here];
         form q = {0};
-        add_line(o, before, here, centre, &q);
-        add_line(o, here, after, centre, &q);
+        add_line(o, v == 0 ? o->vertex_count - 1 : v - 1, centre, &q);
+        add_line(o, v, centre, &q);
         double place[2] = {0, 0};
         least_within_reach(&q, place);
         o->place[v][0] = centre->x + place[0];

@@ -1,7 +1,7 @@
 // Few points: each chord reaches as far as it keeps every crossing within its limits.
 //
-// The limits lie strictly between the two pixel centres of the crack, and the test is exact: the argument in
-// trace.c for why contours cannot touch needs no more than this.
+// The limits are the two pixel centres of the crack or lie between them; they are passed strictly, and the
+// test is exact: the argument in trace.c for why contours cannot touch needs no more than this.
 #include "trace/path.h"
 
 typedef struct wedge { int64_t right[2], left[2]; bool open; } wedge;
@@ -22,13 +22,13 @@ static bool pass(wedge *w, const int32_t from[2], const crossing *c)
     }
     if (cross(w->left, left) < 0) memcpy(w->left, left, sizeof left);
     if (cross(w->right, right) > 0) memcpy(w->right, right, sizeof right);
-    return cross(w->right, w->left) >= 0;
+    return cross(w->right, w->left) > 0;
 }
 
 static bool sees(const wedge *w, const int32_t from[2], const int32_t to[2])
 {
     int64_t d[2] = {(int64_t)to[0] - from[0], (int64_t)to[1] - from[1]};
-    return w->open || (cross(w->right, d) >= 0 && cross(d, w->left) >= 0);
+    return w->open || (cross(w->right, d) > 0 && cross(d, w->left) > 0);
 }
 
 // The last point that a chord from point i may end at; points are numbered around, up to `end`.

@@ -42,7 +42,7 @@ typedef struct tracing {
     const int32_t *group;      // [groups + 1] first path of each group
     bool *square, *corner;     // scratch: a slot a turn and one more a path
     int32_t *from, *vertex;
-    double *cost, (*place)[2];
+    double *cost, (*line)[4], (*place)[2];
     crossing *fine;            // cracks and corners
     int32_t (*point)[2];
     int64_t *first_fine;       // [paths + 1] where a path's fine points begin, from the first path of all
@@ -59,6 +59,7 @@ static void trace_path(tracing *t, int32_t path)
                  .cost = t->cost + slot,
                  .from = t->from + slot,
                  .vertex = t->vertex + slot,
+                 .line = t->line + slot,
                  .place = t->place + slot,
                  .corner = t->corner + slot};
     best_polygon(&o);
@@ -80,6 +81,7 @@ static jali_status take_scratch(jali_context *ctx, tracing *t, int64_t slots, in
     TRY(ARENA(ctx, t->cost, slots));
     TRY(ARENA(ctx, t->from, slots));
     TRY(ARENA(ctx, t->vertex, slots));
+    TRY(ARENA(ctx, t->line, slots));
     TRY(ARENA(ctx, t->place, slots));
     TRY(ARENA(ctx, t->corner, slots));
     TRY(ARENA(ctx, t->fine, fine));
