@@ -87,6 +87,8 @@ static void check_both(const jali_bitmap *bitmap)
 TEST(all_bitmaps_of_4x4)
 {
     jali_bitmap bitmap;
+    int32_t *kept; // holds the arena's chunk, so that not every run maps it anew
+    CHECK_OK(ARENA(ctx, kept, 1));
     CHECK_OK(jali_bitmap_create(ctx, 4, 4, &bitmap));
     for (uint32_t bits = 0; bits < 1 << 16; bits++) {
         for (int32_t i = 0; i < 16; i++) jali_bitmap_set(&bitmap, i % 4, i / 4, bits >> i & 1);
@@ -187,7 +189,9 @@ TEST(circles_are_round)
         }
         print_message("circle r %.1f: %d points, worst %.3f mean %.3f px, sharpest turn %.1f deg\n", r, n, worst, off,
                       sharpest * 180 / M_PI);
-        CHECK(worst < 0.8);
+        CHECK(worst < 0.6 && fabs(off) < 0.25);
+        CHECK(sharpest < (r < 20 ? 40 : 26) * M_PI / 180); // pixel stairs turn by 90
+        CHECK(n < 2 * M_PI * r / 2.2);
         jali_contours_free(ctx, &contours);
         jali_bitmap_free(ctx, &bitmap);
     }
@@ -215,6 +219,74 @@ TEST(straight_bands_have_few_points)
     }
 }
 
+static void trace_with_threads(const jali_bitmap *bitmap, int32_t threads, jali_contours *copy)
+{
+    jali_context_options opt = jali_context_defaults();
+    opt.threads = threads;
+    jali_context *other;
+    jali_contours contours;
+    jali_chart chart = chart_of(bitmap, true);
+    CHECK_INT(jali_context_create(&opt, &other), JALI_OK);
+    CHECK_INT(jali_trace(other, bitmap, &chart, NULL, &contours), JALI_OK);
+    *copy = contours;
+    CHECK_OK(ALLOCATE(ctx, copy->point, contours.point_count));
+    memcpy(copy->point, contours.point, (size_t)contours.point_count * sizeof *copy->point);
+    copy->first = NULL;
+    jali_contours_free(other, &contours);
+    jali_context_free(other);
+}
+
+TEST(any_number_of_threads_gives_the_same_bytes)
+{
+    uint64_t seed = 21;
+    jali_bitmap bitmap = random_bitmap(&seed, 400, 300, 70);
+    jali_contours one, more;
+    trace_with_threads(&bitmap, 1, &one);
+    for (int32_t threads = 2; threads <= 3; threads++) {
+        trace_with_threads(&bitmap, threads, &more);
+        CHECK_INT(one.point_count, more.point_count);
+        CHECK(memcmp(one.point, more.point, (size_t)one.point_count * sizeof *one.point) == 0);
+        jali_contours_free(ctx, &more);
+    }
+    jali_contours_free(ctx, &one);
+    jali_bitmap_free(ctx, &bitmap);
+}
+
+TEST(bad_values_are_a_sentence)
+{
+    jali_bitmap bitmap = drawn_rows(2, "#.");
+    jali_chart chart = chart_of(&bitmap, false);
+    jali_contours contours;
+    chart.pixel_units = 15;
+    CHECK_STATUS(jali_trace(ctx, &bitmap, &chart, NULL, &contours), JALI_BAD_VALUE);
+    CHECK(strstr(jali_message(ctx), "15 units") != NULL && contours.point == NULL);
+    chart.pixel_units = 1 << 24;
+    CHECK_STATUS(jali_trace(ctx, &bitmap, &chart, NULL, &contours), JALI_LIMIT);
+    chart.pixel_units = 16;
+    chart.width_px = 3;
+    CHECK_STATUS(jali_trace(ctx, &bitmap, &chart, NULL, &contours), JALI_BAD_VALUE);
+    chart.width_px = 2;
+    CHECK_STATUS(jali_trace(ctx, &bitmap, &chart, &(jali_trace_options){.deviation_mm = NAN}, &contours), JALI_BAD_VALUE);
+    jali_bitmap_free(ctx, &bitmap);
+}
+
+static jali_status trace_some(jali_context *limited, void *data)
+{
+    jali_contours contours;
+    jali_chart chart = chart_of(data, true);
+    jali_status status = jali_trace(limited, data, &chart, NULL, &contours);
+    jali_contours_free(limited, &contours);
+    return status;
+}
+
+TEST(every_allocation_refused_once)
+{
+    uint64_t seed = 2;
+    jali_bitmap bitmap = random_bitmap(&seed, 40, 40, 50);
+    refuse_each_allocation(trace_some, &bitmap);
+    jali_bitmap_free(ctx, &bitmap);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -222,6 +294,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(corner_touching_pixels_stay_apart, open_context, close_context),
         cmocka_unit_test_setup_teardown(circles_are_round, open_context, close_context),
         cmocka_unit_test_setup_teardown(straight_bands_have_few_points, open_context, close_context),
+        cmocka_unit_test_setup_teardown(any_number_of_threads_gives_the_same_bytes, open_context, close_context),
+        cmocka_unit_test_setup_teardown(bad_values_are_a_sentence, open_context, close_context),
+        cmocka_unit_test_setup_teardown(every_allocation_refused_once, open_context, close_context),
         cmocka_unit_test_setup_teardown(random_bitmaps, open_context, close_context),
         cmocka_unit_test_setup_teardown(all_bitmaps_of_4x4, open_context, close_context),
     };
