@@ -6,7 +6,7 @@
 //          No production extension (parts in other files), no slices, no beams: what they say is not read. Nothing
 //          with a document type is accepted, so there are no entities to expand.
 // Checked: tests/test_model.c, fuzz/fuzz_3mf.c.
-#include "mesh/readers.h"
+#include "mesh/scene.h"
 
 #include "base/number.h"
 #include "mesh/archive.h"
@@ -15,46 +15,19 @@
 
 #define CORE "http://schemas.microsoft.com/3dmanufacturing/core/2015/02|"
 
-enum { MAX_OBJECTS = 20000, MAX_PLACED = 1000000, MAX_DEPTH = 32 };
-
-typedef struct transform {
-    double m[12]; // rows of a 4 x 3 matrix: a point is a row from the left
-} transform;
-
 static const transform identity = {{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}};
-
-// An object placed by a component or by the build.
-typedef struct placed {
-    int32_t object;
-    transform at;
-} placed;
-
-typedef struct object {
-    uint32_t id;
-    int32_t first_vertex, vertex_count, first_triangle, triangle_count;
-    int32_t first_part, part_count;         // its components
-    int64_t all_vertices, all_triangles, instances; // with those of its components
-    int32_t depth;                          // 1 without components
-} object;
 
 typedef struct model {
     jali_context *ctx;
     const model_file *file;
     XML_Parser parser;
     jali_status status;
-    double unit_mm;
-    double (*vertex)[3];      // of all objects
-    int32_t (*triangle)[3];   // indices within their object
-    object *object;
-    placed *part, *item;      // components of all objects; the build
-    int32_t *by_id;           // [object_count], ascending ids
-    size_t vertex_count, triangle_count, object_count, part_count, item_count;
+    scene scene;
+    int32_t *by_id; // [object_count], the objects by ascending ids
     size_t vertex_room, triangle_room, object_room, part_room, item_room, by_id_room;
     bool in_object, in_build, is_model;
     char start_part[256];
 } model;
-
-// ---- reading the XML ----
 
 static void refuse(model *m, jali_status status)
 {
@@ -104,10 +77,10 @@ static bool transform_of(const char *text, transform *t)
 // Where in by_id the id is, or would be.
 static size_t place_of_id(const model *m, uint32_t id)
 {
-    size_t low = 0, high = m->object_count;
+    size_t low = 0, high = m->scene.object_count;
     while (low < high) {
         size_t middle = (low + high) / 2;
-        if (m->object[m->by_id[middle]].id < id) low = middle + 1;
+        if (m->scene.object[m->by_id[middle]].id < id) low = middle + 1;
         else high = middle;
     }
     return low;
@@ -118,7 +91,7 @@ static int32_t object_with(const model *m, const char *text)
     uint32_t id;
     if (!whole_number(text, INT32_MAX, &id)) return -1;
     size_t place = place_of_id(m, id);
-    return place < m->object_count && m->object[m->by_id[place]].id == id ? m->by_id[place] : -1;
+    return place < m->scene.object_count && m->scene.object[m->by_id[place]].id == id ? m->by_id[place] : -1;
 }
 
 static void start_object(model *m, const XML_Char **attributes)
@@ -129,22 +102,22 @@ static void start_object(model *m, const XML_Char **attributes)
         REFUSE(m, "%s, line %lu: an object needs an id of its own", m->file->name, LINE(m));
         return;
     }
-    if (m->object_count == MAX_OBJECTS) {
+    if (m->scene.object_count == MAX_OBJECTS) {
         refuse(m, fail(m->ctx, JALI_LIMIT, "%s has more than %d objects", m->file->name, MAX_OBJECTS));
         return;
     }
-    jali_status status = GROW(m->ctx, m->object, m->object_room, m->object_count + 1);
-    if (status == JALI_OK) status = GROW(m->ctx, m->by_id, m->by_id_room, m->object_count + 1);
+    jali_status status = GROW(m->ctx, m->scene.object, m->object_room, m->scene.object_count + 1);
+    if (status == JALI_OK) status = GROW(m->ctx, m->by_id, m->by_id_room, m->scene.object_count + 1);
     if (status != JALI_OK) {
         refuse(m, status);
         return;
     }
     size_t place = place_of_id(m, id);
-    memmove(m->by_id + place + 1, m->by_id + place, (m->object_count - place) * sizeof *m->by_id);
-    m->by_id[place] = (int32_t)m->object_count;
-    m->object[m->object_count++] = (object){.id = id, .first_vertex = (int32_t)m->vertex_count,
-                                            .first_triangle = (int32_t)m->triangle_count,
-                                            .first_part = (int32_t)m->part_count};
+    memmove(m->by_id + place + 1, m->by_id + place, (m->scene.object_count - place) * sizeof *m->by_id);
+    m->by_id[place] = (int32_t)m->scene.object_count;
+    m->scene.object[m->scene.object_count++] = (object){.id = id, .first_vertex = (int32_t)m->scene.vertex_count,
+                                            .first_triangle = (int32_t)m->scene.triangle_count,
+                                            .first_part = (int32_t)m->scene.part_count};
     m->in_object = true;
 }
 
@@ -157,11 +130,11 @@ static void add_vertex(model *m, const XML_Char **attributes)
             REFUSE(m, "%s, line %lu: a vertex needs a finite number as %s", m->file->name, LINE(m), axis[k]);
             return;
         }
-    jali_status status = m->vertex_count >= (size_t)3 * (size_t)m->file->opt.max_triangles
+    jali_status status = m->scene.vertex_count >= (size_t)3 * (size_t)m->file->opt.max_triangles
         ? fail(m->ctx, JALI_LIMIT, "%s has more vertices than %d triangles can use", m->file->name,
                m->file->opt.max_triangles)
-        : GROW(m->ctx, m->vertex, m->vertex_room, m->vertex_count + 1);
-    if (status == JALI_OK) memcpy(m->vertex[m->vertex_count++], at, sizeof at);
+        : GROW(m->ctx, m->scene.vertex, m->vertex_room, m->scene.vertex_count + 1);
+    if (status == JALI_OK) memcpy(m->scene.vertex[m->scene.vertex_count++], at, sizeof at);
     else refuse(m, status);
 }
 
@@ -170,7 +143,7 @@ static void add_triangle(model *m, const XML_Char **attributes)
     static const char *const corner[] = {"v1", "v2", "v3"};
     uint32_t index;
     int32_t t[3];
-    int64_t known = (int64_t)m->vertex_count - m->object[m->object_count - 1].first_vertex;
+    int64_t known = (int64_t)m->scene.vertex_count - m->scene.object[m->scene.object_count - 1].first_vertex;
     for (int k = 0; k < 3; k++) {
         if (!whole_number(attribute(attributes, corner[k]), INT32_MAX, &index) || index >= known) {
             REFUSE(m, "%s, line %lu: %s is not one of the object's %lld vertices", m->file->name, LINE(m),
@@ -179,10 +152,10 @@ static void add_triangle(model *m, const XML_Char **attributes)
         }
         t[k] = (int32_t)index;
     }
-    jali_status status = m->triangle_count >= (size_t)m->file->opt.max_triangles
+    jali_status status = m->scene.triangle_count >= (size_t)m->file->opt.max_triangles
         ? fail(m->ctx, JALI_LIMIT, "%s has more than %d triangles", m->file->name, m->file->opt.max_triangles)
-        : GROW(m->ctx, m->triangle, m->triangle_room, m->triangle_count + 1);
-    if (status == JALI_OK) memcpy(m->triangle[m->triangle_count++], t, sizeof t);
+        : GROW(m->ctx, m->scene.triangle, m->triangle_room, m->scene.triangle_count + 1);
+    if (status == JALI_OK) memcpy(m->scene.triangle[m->scene.triangle_count++], t, sizeof t);
     else refuse(m, status);
 }
 
@@ -190,18 +163,18 @@ static void add_triangle(model *m, const XML_Char **attributes)
 static void add_placed(model *m, const XML_Char **attributes, bool component)
 {
     placed p = {.object = object_with(m, attribute(attributes, "objectid"))};
-    bool itself = component && p.object == (int32_t)m->object_count - 1;
+    bool itself = component && p.object == (int32_t)m->scene.object_count - 1;
     if (p.object < 0 || itself || !transform_of(attribute(attributes, "transform"), &p.at)) {
         REFUSE(m, "%s, line %lu: %s needs the id of an earlier object, and 12 numbers if it has a transform",
                m->file->name, LINE(m), component ? "a component" : "an item");
         return;
     }
-    size_t *count = component ? &m->part_count : &m->item_count;
+    size_t *count = component ? &m->scene.part_count : &m->scene.item_count;
     jali_status status = *count >= MAX_PLACED
         ? fail(m->ctx, JALI_LIMIT, "%s places objects more than %d times", m->file->name, MAX_PLACED)
-        : component ? GROW(m->ctx, m->part, m->part_room, *count + 1)
-                    : GROW(m->ctx, m->item, m->item_room, *count + 1);
-    if (status == JALI_OK) (component ? m->part : m->item)[(*count)++] = p;
+        : component ? GROW(m->ctx, m->scene.part, m->part_room, *count + 1)
+                    : GROW(m->ctx, m->scene.item, m->item_room, *count + 1);
+    if (status == JALI_OK) (component ? m->scene.part : m->scene.item)[(*count)++] = p;
     else refuse(m, status);
 }
 
@@ -212,10 +185,10 @@ static void start_model(model *m, const XML_Char **attributes)
     };
     const char *unit = attribute(attributes, "unit");
     m->is_model = true;
-    m->unit_mm = unit ? 0 : 1;
+    m->scene.unit_mm = unit ? 0 : 1;
     for (size_t i = 0; unit && i < sizeof units / sizeof *units; i++)
-        if (strcmp(unit, units[i].name) == 0) m->unit_mm = units[i].mm;
-    if (m->unit_mm == 0) REFUSE(m, "%s: unknown unit \"%.40s\"", m->file->name, unit);
+        if (strcmp(unit, units[i].name) == 0) m->scene.unit_mm = units[i].mm;
+    if (m->scene.unit_mm == 0) REFUSE(m, "%s: unknown unit \"%.40s\"", m->file->name, unit);
 }
 
 static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **attributes)
@@ -235,16 +208,16 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
 // The sizes of an object with all its components, which are complete because they came before.
 static void finish_object(model *m)
 {
-    object *o = &m->object[m->object_count - 1];
+    object *o = &m->scene.object[m->scene.object_count - 1];
     m->in_object = false;
-    o->vertex_count = (int32_t)m->vertex_count - o->first_vertex;
-    o->triangle_count = (int32_t)m->triangle_count - o->first_triangle;
-    o->part_count = (int32_t)m->part_count - o->first_part;
+    o->vertex_count = (int32_t)m->scene.vertex_count - o->first_vertex;
+    o->triangle_count = (int32_t)m->scene.triangle_count - o->first_triangle;
+    o->part_count = (int32_t)m->scene.part_count - o->first_part;
     o->all_vertices = o->vertex_count;
     o->all_triangles = o->triangle_count;
     o->instances = o->depth = 1;
     for (int32_t i = 0; i < o->part_count; i++) {
-        const object *p = &m->object[m->part[o->first_part + i].object];
+        const object *p = &m->scene.object[m->scene.part[o->first_part + i].object];
         o->all_vertices = MIN(o->all_vertices + p->all_vertices, INT32_MAX);
         o->all_triangles = MIN(o->all_triangles + p->all_triangles, INT32_MAX);
         o->instances = MIN(o->instances + p->instances, INT32_MAX);
@@ -309,92 +282,6 @@ static jali_status parse_part(model *m, zip_t *archive, const char *part, XML_St
     return status;
 }
 
-// ---- placing the objects ----
-
-// First a, then b.
-static transform after(const transform *a, const transform *b)
-{
-    transform c;
-    for (int row = 0; row < 4; row++)
-        for (int k = 0; k < 3; k++) {
-            const double *r = a->m + 3 * row;
-            c.m[3 * row + k] = r[0] * b->m[k] + r[1] * b->m[3 + k] + r[2] * b->m[6 + k] + (row == 3 ? b->m[9 + k] : 0);
-        }
-    return c;
-}
-
-static bool mirrors(const transform *t)
-{
-    const double *m = t->m;
-    return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-               m[2] * (m[3] * m[7] - m[4] * m[6]) < 0;
-}
-
-// Append one object's own triangles; a mirror image is turned so that outside stays outside.
-static void place_object(const model *m, const object *o, const transform *t, jali_mesh *mesh)
-{
-    bool turn = mirrors(t);
-    for (int32_t i = 0; i < o->triangle_count; i++) {
-        const int32_t *from = m->triangle[o->first_triangle + i];
-        int32_t *to = mesh->triangle[mesh->triangle_count++];
-        for (int k = 0; k < 3; k++) to[k] = mesh->vertex_count + from[turn ? 2 - k : k];
-    }
-    for (int32_t i = 0; i < o->vertex_count; i++) {
-        const double *p = m->vertex[o->first_vertex + i];
-        for (int k = 0; k < 3; k++)
-            mesh->vertex[mesh->vertex_count][k] =
-                (float)(m->unit_mm * (p[0] * t->m[k] + p[1] * t->m[3 + k] + p[2] * t->m[6 + k] + t->m[9 + k]));
-        mesh->vertex_count++;
-    }
-}
-
-// Walk the components below one item with a stack of our own; its depth was checked when the objects were read.
-static void place_item(const model *m, const placed *item, jali_mesh *mesh)
-{
-    struct { placed here; int32_t next; } stack[MAX_DEPTH + 1];
-    int32_t depth = 0;
-    stack[depth].here = *item;
-    stack[depth++].next = 0;
-    place_object(m, &m->object[item->object], &item->at, mesh);
-    while (depth > 0) {
-        const object *o = &m->object[stack[depth - 1].here.object];
-        if (stack[depth - 1].next == o->part_count) {
-            depth--;
-            continue;
-        }
-        const placed *part = &m->part[o->first_part + stack[depth - 1].next++];
-        placed below = {part->object, after(&part->at, &stack[depth - 1].here.at)};
-        place_object(m, &m->object[below.object], &below.at, mesh);
-        stack[depth].here = below;
-        stack[depth++].next = 0;
-    }
-}
-
-static jali_status place_all(const model *m, jali_mesh *mesh)
-{
-    jali_status status;
-    int64_t vertices = 0, triangles = 0, instances = 0;
-    const char *name = m->file->name;
-    if (m->item_count == 0) TRY(fail(m->ctx, JALI_BAD_INPUT, "%s: nothing is placed in its build", name));
-    for (size_t i = 0; i < m->item_count; i++) {
-        const object *o = &m->object[m->item[i].object];
-        vertices += o->all_vertices;
-        triangles += o->all_triangles;
-        instances += o->instances;
-    }
-    if (triangles > m->file->opt.max_triangles || vertices > 3 * (int64_t)m->file->opt.max_triangles ||
-        instances > MAX_PLACED)
-        TRY(fail(m->ctx, JALI_LIMIT, "%s places %lld triangles in %lld parts; limits are %d and %d", name,
-                 (long long)triangles, (long long)instances, m->file->opt.max_triangles, MAX_PLACED));
-    if (triangles == 0) TRY(fail(m->ctx, JALI_BAD_INPUT, "%s holds no triangles", name));
-    TRY(mesh_create(m->ctx, (int32_t)vertices, (int32_t)triangles, mesh));
-    mesh->vertex_count = mesh->triangle_count = 0;
-    for (size_t i = 0; i < m->item_count; i++) place_item(m, &m->item[i], mesh);
-    TRY(mesh_validate(m->ctx, mesh)); // a transform may have passed the largest number
-done:
-    return status;
-}
-
 bool looks_like_3mf(const model_file *file)
 {
     return file->size >= 4 && memcmp(file->data, "PK\3\4", 4) == 0;
@@ -410,15 +297,15 @@ jali_status read_3mf(jali_context *ctx, const model_file *file, jali_mesh *mesh)
     if (!m.start_part[0]) strcpy(m.start_part, "3D/3dmodel.model");
     TRY(parse_part(&m, archive, m.start_part, on_start, on_end));
     if (!m.is_model) TRY(fail(ctx, JALI_BAD_INPUT, "%s: %s is no 3MF model", file->name, m.start_part));
-    TRY(place_all(&m, mesh));
+    TRY(scene_mesh(ctx, &m.scene, file, mesh));
 done:
     if (status != JALI_OK) jali_mesh_free(ctx, mesh);
     archive_close(archive);
-    release(ctx, m.vertex);
-    release(ctx, m.triangle);
-    release(ctx, m.object);
-    release(ctx, m.part);
-    release(ctx, m.item);
+    release(ctx, m.scene.vertex);
+    release(ctx, m.scene.triangle);
+    release(ctx, m.scene.object);
+    release(ctx, m.scene.part);
+    release(ctx, m.scene.item);
     release(ctx, m.by_id);
     return status;
 }
