@@ -1,5 +1,5 @@
-// Any bytes as 3MF. Half of the inputs are an archive as they are; the rest is packed into one as its model, since
-// a mutated archive rarely passes its checksums.
+// Any bytes as 3MF. Half of the inputs are an archive as they are; the rest is packed into one as its model,
+// since a mutated archive rarely passes its checksums.
 #include "model.h"
 
 #include "write/zip.h"

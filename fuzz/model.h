@@ -10,7 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REQUIRE(condition) do { if (!(condition)) abort(); } while (0)
+#define REQUIRE(condition)                                                                                   \
+    do {                                                                                                     \
+        if (!(condition)) abort();                                                                           \
+    } while (0)
 
 static inline void require_sound(const jali_mesh *mesh)
 {
@@ -18,7 +21,8 @@ static inline void require_sound(const jali_mesh *mesh)
     for (int32_t i = 0; i < mesh->vertex_count; i++)
         for (int k = 0; k < 3; k++) REQUIRE(isfinite(mesh->vertex[i][k]));
     for (int32_t t = 0; t < mesh->triangle_count; t++)
-        for (int k = 0; k < 3; k++) REQUIRE(mesh->triangle[t][k] >= 0 && mesh->triangle[t][k] < mesh->vertex_count);
+        for (int k = 0; k < 3; k++)
+            REQUIRE(mesh->triangle[t][k] >= 0 && mesh->triangle[t][k] < mesh->vertex_count);
 }
 
 // Every edge is in some triangle, and the counts of the report fit each other.
@@ -54,7 +58,8 @@ static inline int fuzz_model(const uint8_t *data, size_t size, jali_format forma
         REQUIRE(jali_write_bytes(ctx, format, &(jali_product){.mesh = &mesh}, &plain, &bytes) == JALI_OK);
         status = jali_check_readback(ctx, bytes.data, bytes.size, &mesh);
         // A 3MF may hold what float32 cannot: coordinates beyond it, vertices at one place.
-        REQUIRE(status == JALI_OK || (format == JALI_FORMAT_STL && (status == JALI_BROKEN || status == JALI_BAD_INPUT)));
+        REQUIRE(status == JALI_OK ||
+                (format == JALI_FORMAT_STL && (status == JALI_BROKEN || status == JALI_BAD_INPUT)));
     } else {
         REQUIRE(mesh.vertex == NULL && strlen(jali_message(ctx)) > 0);
     }

@@ -105,8 +105,9 @@ static inline int32_t add_cell(jali_mesh *mesh, int32_t at, const int32_t corner
     return at;
 }
 
-/// A plate of n x n square cells of `cell_mm`, 4 mm thick; cells with odd x and y are holes. Vertices inside are
-/// moved within the lattice of 2^-10 mm by `seed` (0: not at all), so that its flat faces are no regular grid.
+/// A plate of n x n square cells of `cell_mm`, 4 mm thick; cells with odd x and y are holes. Vertices inside
+/// are moved within the lattice of 2^-10 mm by `seed` (0: not at all), so that its flat faces are no regular
+/// grid.
 static inline jali_mesh pierced_plate(int32_t n, double cell_mm, uint64_t seed)
 {
     int32_t side = n + 1, holes = (n / 2) * (n / 2);
@@ -133,8 +134,9 @@ static inline jali_mesh pierced_plate(int32_t n, double cell_mm, uint64_t seed)
                 for (int k = 0; k < 4; k++)
                     corner[level][k] = level * side * side + (y + (k >> 1)) * side + x + ((k + 1) >> 1 & 1);
             bool odd_x = x & 1, odd_y = y & 1;
-            bool wall[4] = {y == 0 || (odd_x && y >= 1 && !odd_y && y - 1 < n), x == n - 1 || (odd_y && !odd_x),
-                            y == n - 1 || (odd_x && !odd_y), x == 0 || (odd_y && !odd_x)};
+            bool wall[4] = {y == 0 || (odd_x && y >= 1 && !odd_y && y - 1 < n),
+                            x == n - 1 || (odd_y && !odd_x), y == n - 1 || (odd_x && !odd_y),
+                            x == 0 || (odd_y && !odd_x)};
             at = add_cell(&mesh, at, (const int32_t(*)[4])corner, wall);
         }
     CHECK_INT(at, mesh.triangle_count);

@@ -138,13 +138,13 @@ static bool meet(double (*vertex)[3], const int32_t a[3], const int32_t b[3], in
 
 TEST(pairs_in_one_plane)
 {
-    double v[][3] = {{0, 0, 1}, {4, 0, 1}, {0, 4, 1}, {1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {4, 4, 1}, {-1, -1, 1},
-                     {5, 5, 1}, {2, 2, 1}, {-4, 0, 1}, {0, -4, 1}, {3, 0, 1}};
+    double v[][3] = {{0, 0, 1},   {4, 0, 1}, {0, 4, 1}, {1, 1, 1},  {2, 1, 1},  {1, 2, 1}, {4, 4, 1},
+                     {-1, -1, 1}, {5, 5, 1}, {2, 2, 1}, {-4, 0, 1}, {0, -4, 1}, {3, 0, 1}};
     const int32_t n = sizeof v / sizeof *v;
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){3, 4, 5}, n));    // one inside the other
-    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){2, 1, 6}, n));   // neighbours
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){1, 2, 3}, n));    // folded over the common edge
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 4, 5}, n));    // sector within the sector
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){3, 4, 5}, n));  // one inside the other
+    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){2, 1, 6}, n)); // neighbours
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){1, 2, 3}, n));  // folded over the common edge
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 4, 5}, n));  // sector within the sector
     CHECK(meet(v, (int32_t[]){0, 4, 5}, (int32_t[]){0, 1, 2}, n));
     CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 10, 11}, n)); // opposite sectors
     CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 12, 11}, n));  // along an arm
@@ -153,23 +153,25 @@ TEST(pairs_in_one_plane)
 
 TEST(pairs_in_space)
 {
-    double v[][3] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {2, 1, 5},  {0, 0, 4}, {1, 1, 0},
-                     {9, 9, 9}, {2, 2, 3}, {2, 2, -3}, {3, 3, 0}, {4, 4, 1}, {-1, -1, 3}, {5, 5, 0}};
+    double v[][3] = {{0, 0, 0},  {4, 0, 0}, {0, 4, 0}, {1, 1, -1},  {1, 1, 1},
+                     {2, 1, 5},  {0, 0, 4}, {1, 1, 0}, {9, 9, 9},   {2, 2, 3},
+                     {2, 2, -3}, {3, 3, 0}, {4, 4, 1}, {-1, -1, 3}, {5, 5, 0}};
     const int32_t n = sizeof v / sizeof *v;
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){3, 4, 5}, n));    // pierced
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){7, 4, 5}, n));    // touched by a vertex
-    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){4, 5, 8}, n));   // above
-    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 1, 6}, n));   // a common edge, upright
-    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 6, 8}, n));   // a common vertex, upright
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 3, 4}, n));    // a common vertex, through it
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 6, 7}, n));    // a common vertex, an edge within it
-    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 9, 10}, n));   // through the common vertex and beyond
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){3, 4, 5}, n));  // pierced
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){7, 4, 5}, n));  // touched by a vertex
+    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){4, 5, 8}, n)); // above
+    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 1, 6}, n)); // a common edge, upright
+    CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 6, 8}, n)); // a common vertex, upright
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 3, 4}, n));  // a common vertex, through it
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 6, 7}, n));  // a common vertex, an edge within it
+    CHECK(meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 9, 10}, n)); // through the common vertex and beyond
     CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){11, 12, 9}, n));
     CHECK(!meet(v, (int32_t[]){0, 1, 2}, (int32_t[]){0, 13, 8}, n));
 }
 
 // A second opinion by other means. Two convex sets meet when 0 lies in the hull of all differences of their
-// corners; by Caratheodory it then lies in a simplex of at most four of them, and every such simplex is tried.
+// corners; by Caratheodory it then lies in a simplex of at most four of them, and every such simplex is
+// tried.
 typedef int64_t vector[3];
 
 static int64_t dot(const vector a, const vector b)
@@ -235,8 +237,8 @@ static bool zero_in_hull(const vector *v, int count)
     return false;
 }
 
-// Triangles a = 0, 1, 2 and b = 3, 4, 5; when they share a vertex, b = 0, 4, 5 and the question is whether their
-// sectors share a direction: whether 0 is in the hull of the arms of a and the opposite arms of b.
+// Triangles a = 0, 1, 2 and b = 3, 4, 5; when they share a vertex, b = 0, 4, 5 and the question is whether
+// their sectors share a direction: whether 0 is in the hull of the arms of a and the opposite arms of b.
 static bool hulls_meet(const vector v[6], bool shared)
 {
     vector difference[9];
@@ -263,11 +265,13 @@ TEST(random_pairs_agree_with_a_search_of_all_simplices)
         int32_t a[3] = {0, 1, 2}, b[3] = {round & 1 ? 0 : 3, 4, 5};
         for (int i = 0; i < 6; i++)
             for (int k = 0; k < 3; k++)
-                v[i][k] = (double)(w[i][k] = (int64_t)(next_random(&seed) >> 32) % (k == 2 && round & 2 ? 2 : 4));
+                v[i][k] =
+                    (double)(w[i][k] = (int64_t)(next_random(&seed) >> 32) % (k == 2 && round & 2 ? 2 : 4));
         if (round & 1) memcpy(w[3], w[0], sizeof *w), memcpy(v[3], v[0], sizeof *v);
         bool fit = true;
         for (int i = 0; i < 6; i++)
-            for (int j = 0; j < i; j++) fit &= (i == 3 && j == 0 && round & 1) || memcmp(w[i], w[j], sizeof *w);
+            for (int j = 0; j < i; j++)
+                fit &= (i == 3 && j == 0 && round & 1) || memcmp(w[i], w[j], sizeof *w);
         for (int t = 0; t < 6; t += 3) {
             vector u[2], n;
             for (int i = 0; i < 2; i++)
@@ -284,19 +288,21 @@ TEST(random_pairs_agree_with_a_search_of_all_simplices)
     CHECK(tried > 10000 && met > tried / 10 && met < tried - tried / 10);
 }
 
-// Triangles between random points of a small lattice; `far` adds one at a distance that needs the wide arithmetic
-// and float boxes that are rounded.
+// Triangles between random points of a small lattice; `far` adds one at a distance that needs the wide
+// arithmetic and float boxes that are rounded.
 static jali_mesh random_soup(uint64_t seed, int32_t count, double spread, bool far)
 {
     jali_mesh mesh;
     CHECK_OK(mesh_create(ctx, 3 * (count + far), count + far, &mesh));
     for (int32_t t = 0; t < count + far; t++) {
         double centre[3];
-        for (int k = 0; k < 3; k++) centre[k] = (double)(next_random(&seed) >> 58) + (t == count ? 0x1p50 : 0);
+        for (int k = 0; k < 3; k++)
+            centre[k] = (double)(next_random(&seed) >> 58) + (t == count ? 0x1p50 : 0);
         for (int i = 0; i < 3; i++) {
             mesh.triangle[t][i] = 3 * t + i;
             for (int k = 0; k < 3; k++)
-                mesh.vertex[3 * t + i][k] = centre[k] + floor(spread * (double)(next_random(&seed) >> 11) * 0x1p-53);
+                mesh.vertex[3 * t + i][k] =
+                    centre[k] + floor(spread * (double)(next_random(&seed) >> 11) * 0x1p-53);
         }
     }
     return mesh;
@@ -439,15 +445,27 @@ TEST(every_refused_allocation_is_a_status)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        RUN(a_tetrahedron_is_a_solid), RUN(a_cube_measures_what_it_should), RUN(a_torus_has_one_hole),
-        RUN(an_open_box_shows_its_four_edges), RUN(a_flipped_face_is_misdirected),
-        RUN(a_box_inside_out_is_misplaced), RUN(cubes_that_share_an_edge_or_a_vertex_are_not_manifold),
-        RUN(nested_shells_are_judged_by_what_encloses_them), RUN(boxes_through_each_other_are_counted),
-        RUN(touching_boxes_intersect_without_a_common_vertex), RUN(pairs_in_one_plane), RUN(pairs_in_space),
-        RUN(random_pairs_agree_with_a_search_of_all_simplices), RUN(the_search_finds_every_pair), RUN(degenerate_and_repeated_triangles_are_found),
-        RUN(pierced_plates_are_solids), RUN(threads_do_not_change_a_report),
-        RUN(what_cannot_be_checked_is_refused), RUN(coordinates_of_any_size_are_put_on_a_lattice),
-        RUN(the_report_reads_well), RUN(every_refused_allocation_is_a_status),
+        RUN(a_tetrahedron_is_a_solid),
+        RUN(a_cube_measures_what_it_should),
+        RUN(a_torus_has_one_hole),
+        RUN(an_open_box_shows_its_four_edges),
+        RUN(a_flipped_face_is_misdirected),
+        RUN(a_box_inside_out_is_misplaced),
+        RUN(cubes_that_share_an_edge_or_a_vertex_are_not_manifold),
+        RUN(nested_shells_are_judged_by_what_encloses_them),
+        RUN(boxes_through_each_other_are_counted),
+        RUN(touching_boxes_intersect_without_a_common_vertex),
+        RUN(pairs_in_one_plane),
+        RUN(pairs_in_space),
+        RUN(random_pairs_agree_with_a_search_of_all_simplices),
+        RUN(the_search_finds_every_pair),
+        RUN(degenerate_and_repeated_triangles_are_found),
+        RUN(pierced_plates_are_solids),
+        RUN(threads_do_not_change_a_report),
+        RUN(what_cannot_be_checked_is_refused),
+        RUN(coordinates_of_any_size_are_put_on_a_lattice),
+        RUN(the_report_reads_well),
+        RUN(every_refused_allocation_is_a_status),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,8 +17,10 @@ static jali_status read_text(const char *text, jali_mesh *mesh)
 static const char ascii_tetrahedron[] =
     "solid a facet of vertex words\n"
     "facet normal 0 0 -1\n outer loop\n vertex 0 0 0\n vertex 0 1 0\n vertex 1 0 0\n endloop\nendfacet\n"
-    "FACET NORMAL 0 -1 0\r\n OUTER LOOP\r\n VERTEX 0 0 0\r\n VERTEX 1 0 0\r\n VERTEX 0 0 1\r\n ENDLOOP\r\nENDFACET\r\n"
-    "facet normal 1 1 1\n outer loop\n vertex 1e0 0 -0\n vertex 0 .1e+1 0\n vertex 0 0 1.000\n endloop\nendfacet\n"
+    "FACET NORMAL 0 -1 0\r\n OUTER LOOP\r\n VERTEX 0 0 0\r\n VERTEX 1 0 0\r\n VERTEX 0 0 1\r\n "
+    "ENDLOOP\r\nENDFACET\r\n"
+    "facet normal 1 1 1\n outer loop\n vertex 1e0 0 -0\n vertex 0 .1e+1 0\n vertex 0 0 1.000\n "
+    "endloop\nendfacet\n"
     "facet normal -1 0 0 outer loop vertex 0 0 0 vertex 0 0 1 vertex 0 1 0 endloop endfacet\n"
     "endsolid a facet of vertex words\n";
 
@@ -64,8 +66,10 @@ TEST(every_prefix_of_a_binary_model_is_refused)
     jali_mesh cube = box_shape(0, 0, 0, 1, 2, 3), mesh;
     for (int kind = 0; kind < 2; kind++) {
         jali_bytes bytes = {0};
-        if (kind) CHECK_OK(jali_write_3mf(ctx, &cube, &(jali_write_options){.no_thumbnail = true}, &bytes));
-        else CHECK_OK(jali_write_stl(ctx, &cube, &bytes));
+        if (kind)
+            CHECK_OK(jali_write_3mf(ctx, &cube, &(jali_write_options){.no_thumbnail = true}, &bytes));
+        else
+            CHECK_OK(jali_write_stl(ctx, &cube, &bytes));
         for (size_t length = 0; length < bytes.size; length++) {
             uint8_t *exact = malloc(length + 1); // an own block: a read behind its end is seen
             memcpy(exact, bytes.data, length);
@@ -123,12 +127,16 @@ static jali_status read_3mf_text(const char *model, jali_mesh *mesh)
     return status;
 }
 
-#define MODEL(unit) "<model unit=\"" unit "\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
-#define TETRAHEDRON(id) \
-    "<object id=\"" id "\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>" \
-    "<vertex x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles>" \
-    "<triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/>" \
-    "<triangle v1=\"1\" v2=\"2\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" v3=\"2\"/></triangles></mesh></object>"
+#define MODEL(unit)                                                                                          \
+    "<model unit=\"" unit "\" "                                                                              \
+                          "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
+#define TETRAHEDRON(id)                                                                                      \
+    "<object id=\"" id                                                                                       \
+    "\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"                  \
+    "<vertex x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles>"               \
+    "<triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/>"                           \
+    "<triangle v1=\"1\" v2=\"2\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" "                                     \
+    "v3=\"2\"/></triangles></mesh></object>"
 #define BUILD(items) "</resources><build>" items "</build></model>"
 
 TEST(components_units_and_mirrors_are_placed)
@@ -136,9 +144,12 @@ TEST(components_units_and_mirrors_are_placed)
     jali_mesh mesh;
     jali_check_report r;
     CHECK_OK(read_3mf_text(
-        MODEL("inch") TETRAHEDRON("7") "<object id=\"3\"><components><component objectid=\"7\"/>"
-        "<component objectid=\"7\" transform=\"-1 0 0 0 1 0 0 0 1 -5 0 0\"/></components></object>"
-        BUILD("<item objectid=\"3\" transform=\"2 0 0 0 2 0 0 0 2 0 0 10\"/><item objectid=\"7\"/>"), &mesh));
+        MODEL("inch") TETRAHEDRON(
+            "7") "<object id=\"3\"><components><component objectid=\"7\"/>"
+                 "<component objectid=\"7\" transform=\"-1 0 0 0 1 0 0 0 1 -5 0 "
+                 "0\"/></components></object>" BUILD(
+                     "<item objectid=\"3\" transform=\"2 0 0 0 2 0 0 0 2 0 0 10\"/><item objectid=\"7\"/>"),
+        &mesh));
     CHECK_INT(mesh.triangle_count, 12);
     CHECK_OK(jali_check(ctx, &mesh, NULL, &r));
     CHECK(r.solid);
@@ -150,7 +161,9 @@ TEST(components_units_and_mirrors_are_placed)
 
 TEST(what_a_3mf_must_not_say_is_refused)
 {
-    static const struct { const char *model, *sentence; } cases[] = {
+    static const struct {
+        const char *model, *sentence;
+    } cases[] = {
         {"<a/>", "no 3MF model"},
         {"<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>", "document type"},
         {"<a>", "no element found"},
@@ -159,14 +172,18 @@ TEST(what_a_3mf_must_not_say_is_refused)
         {MODEL("meter") TETRAHEDRON("1") BUILD("<item objectid=\"2\"/>"), "earlier object"},
         {MODEL("meter") TETRAHEDRON("1") BUILD("<item objectid=\"1\" transform=\"1 2 3\"/>"), "12 numbers"},
         {MODEL("meter") TETRAHEDRON("1") TETRAHEDRON("1") BUILD(""), "id of its own"},
-        {MODEL("meter") "<object id=\"1\"><components><component objectid=\"1\"/></components></object>" BUILD(""),
+        {MODEL("meter") "<object id=\"1\"><components><component "
+                        "objectid=\"1\"/></components></object>" BUILD(""),
          "earlier object"},
-        {MODEL("meter") "<object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"nan\" z=\"0\"/>", "finite number as y"},
-        {MODEL("meter") "<object id=\"1\"><mesh><triangles><triangle v1=\"0\" v2=\"0\" v3=\"0\"/>", "0 vertices"},
+        {MODEL("meter") "<object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"nan\" z=\"0\"/>",
+         "finite number as y"},
+        {MODEL("meter") "<object id=\"1\"><mesh><triangles><triangle v1=\"0\" v2=\"0\" v3=\"0\"/>",
+         "0 vertices"},
         {MODEL("meter") "<object id=\"1\"/>" BUILD("<item objectid=\"1\"/>"), "no triangles"},
         {MODEL("meter") TETRAHEDRON("1")
-         BUILD("<item objectid=\"1\" transform=\"1e300 0 0 0 1 0 0 0 1 0 0 0\"/>"
-               "<item objectid=\"1\" transform=\"1e308 0 0 0 1 0 0 0 1 0 0 0\"/>"), "not a finite number"},
+             BUILD("<item objectid=\"1\" transform=\"1e300 0 0 0 1 0 0 0 1 0 0 0\"/>"
+                   "<item objectid=\"1\" transform=\"1e308 0 0 0 1 0 0 0 1 0 0 0\"/>"),
+         "not a finite number"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         jali_mesh mesh;
@@ -185,8 +202,10 @@ TEST(a_component_bomb_is_a_limit)
     jali_mesh mesh;
     CHECK_OK(bytes_print(ctx, &model, "%s", MODEL("meter") TETRAHEDRON("1")));
     for (int i = 2; i <= 31; i++)
-        CHECK_OK(bytes_print(ctx, &model, "<object id=\"%d\"><components><component objectid=\"%d\"/>"
-                                          "<component objectid=\"%d\"/></components></object>", i, i - 1, i - 1));
+        CHECK_OK(bytes_print(ctx, &model,
+                             "<object id=\"%d\"><components><component objectid=\"%d\"/>"
+                             "<component objectid=\"%d\"/></components></object>",
+                             i, i - 1, i - 1));
     CHECK_OK(bytes_print(ctx, &model, "%s", BUILD("<item objectid=\"31\"/>")));
     CHECK_STATUS(read_3mf_text((char *)model.data, &mesh), JALI_LIMIT);
     jali_bytes_free(ctx, &model);
@@ -212,7 +231,8 @@ TEST(damage_anywhere_in_a_3mf_never_passes_for_the_model)
     for (size_t i = 0; i < bytes.size; i++) {
         bytes.data[i] ^= 0x55;
         jali_status status = jali_read_model_bytes(ctx, bytes.data, bytes.size, "model", NULL, &mesh);
-        if (status == JALI_OK) CHECK_OK(jali_check_readback(ctx, bytes.data, bytes.size, &cube)); // harmless there
+        if (status == JALI_OK)
+            CHECK_OK(jali_check_readback(ctx, bytes.data, bytes.size, &cube)); // harmless there
         jali_mesh_free(ctx, &mesh);
         bytes.data[i] ^= 0x55;
     }
@@ -223,9 +243,26 @@ TEST(damage_anywhere_in_a_3mf_never_passes_for_the_model)
 TEST(decimals_are_read_as_strtod_reads_them)
 {
     static const char *const texts[] = {
-        "0", "-0", "1", ".5", "5.", "1e5", "1E-5", "123456789012345678901234567890", "0.1", "1e22", "1e23", "8e22",
-        "9007199254740993", "2.2250738585072011e-308", "4.9e-324", "1.7976931348623157e308", "0.00000000000000000001",
-        "6.02214076e+23", "1e-400", "000000000000000000000000000000000000001.5",
+        "0",
+        "-0",
+        "1",
+        ".5",
+        "5.",
+        "1e5",
+        "1E-5",
+        "123456789012345678901234567890",
+        "0.1",
+        "1e22",
+        "1e23",
+        "8e22",
+        "9007199254740993",
+        "2.2250738585072011e-308",
+        "4.9e-324",
+        "1.7976931348623157e308",
+        "0.00000000000000000001",
+        "6.02214076e+23",
+        "1e-400",
+        "000000000000000000000000000000000000001.5",
         "9007199254740992.99999999999999999999999999999999999999999999999999999999",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
@@ -244,8 +281,9 @@ TEST(decimals_are_read_as_strtod_reads_them)
     uint64_t seed = 5;
     for (int i = 0; i < 100000; i++) {
         char text[64];
-        int length = snprintf(text, sizeof text, "%.*e", (int)(next_random(&seed) >> 59),
-                              ldexp((double)(next_random(&seed) >> 11), (int)(next_random(&seed) >> 57) - 116));
+        int length =
+            snprintf(text, sizeof text, "%.*e", (int)(next_random(&seed) >> 59),
+                     ldexp((double)(next_random(&seed) >> 11), (int)(next_random(&seed) >> 57) - 116));
         const char *at = text;
         double value;
         CHECK(read_decimal(&at, text + length, &value));
@@ -256,8 +294,14 @@ TEST(decimals_are_read_as_strtod_reads_them)
 // Figures of SOURCES.md for the files of a format that is read.
 TEST(real_meshes_show_their_flaws)
 {
-    static const struct { const char *name; int32_t triangles; int64_t open, crossing; bool solid; } known[] = {
-        {"cylinder.stl", 416, 0, 0, true}, {"bad-holes-tiny-units.stl", 3262, 54, 131, false},
+    static const struct {
+        const char *name;
+        int32_t triangles;
+        int64_t open, crossing;
+        bool solid;
+    } known[] = {
+        {"cylinder.stl", 416, 0, 0, true},
+        {"bad-holes-tiny-units.stl", 3262, 54, 131, false},
     };
     const char *data = getenv("JALI_DATA");
     int skipped = 0;
@@ -304,8 +348,9 @@ TEST(every_refused_allocation_is_a_status)
     CHECK_OK(bytes_print(ctx, &bytes, "%s", ascii_tetrahedron));
     refuse_each_allocation(read_again, &bytes);
     jali_bytes_free(ctx, &bytes);
-    bytes = archive_of(MODEL("meter") TETRAHEDRON("1") "<object id=\"2\"><components><component objectid=\"1\"/>"
-                       "</components></object>" BUILD("<item objectid=\"2\"/>"));
+    bytes =
+        archive_of(MODEL("meter") TETRAHEDRON("1") "<object id=\"2\"><components><component objectid=\"1\"/>"
+                                                   "</components></object>" BUILD("<item objectid=\"2\"/>"));
     refuse_each_allocation(read_again, &bytes);
     jali_bytes_free(ctx, &bytes);
     jali_mesh_free(ctx, &cube);
@@ -316,13 +361,20 @@ TEST(every_refused_allocation_is_a_status)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        RUN(ascii_stl_is_read_and_welded), RUN(every_prefix_of_an_ascii_stl_is_refused),
-        RUN(a_binary_stl_may_begin_with_solid), RUN(every_prefix_of_a_binary_model_is_refused),
-        RUN(a_stl_with_a_coordinate_that_is_no_number_is_refused), RUN(other_types_are_named),
-        RUN(components_units_and_mirrors_are_placed), RUN(what_a_3mf_must_not_say_is_refused),
-        RUN(a_component_bomb_is_a_limit), RUN(a_decompression_bomb_is_refused),
-        RUN(damage_anywhere_in_a_3mf_never_passes_for_the_model), RUN(decimals_are_read_as_strtod_reads_them),
-        RUN(real_meshes_show_their_flaws), RUN(every_refused_allocation_is_a_status),
+        RUN(ascii_stl_is_read_and_welded),
+        RUN(every_prefix_of_an_ascii_stl_is_refused),
+        RUN(a_binary_stl_may_begin_with_solid),
+        RUN(every_prefix_of_a_binary_model_is_refused),
+        RUN(a_stl_with_a_coordinate_that_is_no_number_is_refused),
+        RUN(other_types_are_named),
+        RUN(components_units_and_mirrors_are_placed),
+        RUN(what_a_3mf_must_not_say_is_refused),
+        RUN(a_component_bomb_is_a_limit),
+        RUN(a_decompression_bomb_is_refused),
+        RUN(damage_anywhere_in_a_3mf_never_passes_for_the_model),
+        RUN(decimals_are_read_as_strtod_reads_them),
+        RUN(real_meshes_show_their_flaws),
+        RUN(every_refused_allocation_is_a_status),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

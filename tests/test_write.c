@@ -1,4 +1,5 @@
-// Writing: what was written reads back the same, byte for byte each time, and never replaces a file by half of one.
+// Writing: what was written reads back the same, byte for byte each time, and never replaces a file by half
+//          of one.
 #include "shapes.h"
 
 #include <jali/check.h>
@@ -64,7 +65,7 @@ static bool same_bytes(const jali_bytes *a, const jali_bytes *b)
 
 static jali_contours ring(void)
 {
-    static const int32_t point[][2] = {{0, 0}, {81920, 0}, {81920, 40960}, {0, 40960},
+    static const int32_t point[][2] = {{0, 0},       {81920, 0},   {81920, 40960}, {0, 40960},
                                        {1024, 1024}, {1024, 2047}, {2048, 1024}};
     jali_contours c = {.contour_count = 2, .point_count = 7, .unit_mm = 1.0 / 1024};
     CHECK_OK(ALLOCATE(ctx, c.first, 3));
@@ -103,9 +104,19 @@ TEST(decimals_read_back_the_same)
         if (i % 4 == 0 && value != (double)(float)value) CHECK(back == value);
         CHECK(strtof(text, NULL) == (float)value || !isfinite((float)value));
     }
-    static const struct { double value; const char *text; } known[] = {
-        {0, "0"}, {-1.5, "-1.5"}, {1.0 / 1024, "0.0009765625"}, {12345.0 / 131072, "0.094184875"}, {0.1f, "0.1"}, {-33.3f, "-33.3"}, {1e-7f, "1.00000e-07"},
-        {0.1, "1.00000000000000e-01"}, {16777216, "16777216"},
+    static const struct {
+        double value;
+        const char *text;
+    } known[] = {
+        {0, "0"},
+        {-1.5, "-1.5"},
+        {1.0 / 1024, "0.0009765625"},
+        {12345.0 / 131072, "0.094184875"},
+        {0.1f, "0.1"},
+        {-33.3f, "-33.3"},
+        {1e-7f, "1.00000e-07"},
+        {0.1, "1.00000000000000e-01"},
+        {16777216, "16777216"},
     };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         char text[DECIMAL_BYTES + 1];
@@ -148,7 +159,8 @@ TEST(threads_do_not_change_a_byte)
 {
     jali_mesh mesh = pierced_plate(61, 1, 3);
     jali_bytes reference[2] = {{0}, {0}};
-    jali_write_options opt = {.title = "Jali & <screen> \"x\" \xc3\xa9 \xff \x01", .parameters = "width_mm=61"};
+    jali_write_options opt = {.title = "Jali & <screen> \"x\" \xc3\xa9 \xff \x01",
+                              .parameters = "width_mm=61"};
     for (int32_t threads = 1; threads <= 3; threads++) {
         jali_context_options options = jali_context_defaults();
         options.threads = threads;
@@ -184,12 +196,16 @@ TEST(outside_programs_read_the_files)
         CHECK(succeeds("unzip -tqq %s", in_folder("a.3MF")));
         if (succeeds("command -v %s >/dev/null", "xmllint"))
             CHECK(succeeds("unzip -p %s 3D/3dmodel.model | xmllint --noout -", in_folder("a.3MF")));
-    } else skipped++;
-    if (succeeds("command -v %s >/dev/null", "xmllint")) CHECK(succeeds("xmllint --noout %s", in_folder("a.svg")));
-    else skipped++;
+    } else
+        skipped++;
+    if (succeeds("command -v %s >/dev/null", "xmllint"))
+        CHECK(succeeds("xmllint --noout %s", in_folder("a.svg")));
+    else
+        skipped++;
     if (succeeds("command -v %s >/dev/null", "admesh"))
         CHECK(succeeds("admesh %s | grep -q 'Number of parts *: *1 '", in_folder("a.stl")));
-    else skipped++;
+    else
+        skipped++;
     if (skipped) print_message("%d outside programs not there: skipped\n", skipped);
     free_ring(&contours);
     jali_mesh_free(ctx, &mesh);
@@ -214,7 +230,10 @@ TEST(flat_formats_say_what_they_should)
     free_ring(&contours);
 }
 
-typedef struct memory { const jali_bytes *bytes; size_t at; } memory;
+typedef struct memory {
+    const jali_bytes *bytes;
+    size_t at;
+} memory;
 
 static void read_memory(png_structp png, png_bytep to, size_t size)
 {
@@ -287,9 +306,11 @@ TEST(an_unwritable_place_is_a_sentence)
     jali_product product = {.mesh = &cube};
     CHECK_STATUS(jali_write(ctx, in_folder("no/such/a.stl"), &product, NULL), JALI_IO);
     CHECK(strstr(jali_message(ctx), "no/such/a.stl: No such file or directory") != NULL);
-    CHECK_STATUS(jali_write(ctx, folder, &product, &(jali_write_options){.format = JALI_FORMAT_STL}), JALI_IO);
+    CHECK_STATUS(jali_write(ctx, folder, &product, &(jali_write_options){.format = JALI_FORMAT_STL}),
+                 JALI_IO);
     CHECK(strstr(jali_message(ctx), "Is a directory") != NULL);
-    CHECK_STATUS(jali_write(ctx, "/dev/full", &product, &(jali_write_options){.format = JALI_FORMAT_STL}), JALI_IO);
+    CHECK_STATUS(jali_write(ctx, "/dev/full", &product, &(jali_write_options){.format = JALI_FORMAT_STL}),
+                 JALI_IO);
     CHECK(strstr(jali_message(ctx), "/dev/full: No space left on device") != NULL);
     CHECK_OK(jali_write(ctx, "/dev/null", &product, &(jali_write_options){.format = JALI_FORMAT_STL}));
     CHECK_STATUS(jali_write(ctx, in_folder("a.xyz"), &product, NULL), JALI_BAD_VALUE);
@@ -299,7 +320,8 @@ TEST(an_unwritable_place_is_a_sentence)
     jali_mesh_free(ctx, &cube);
 }
 
-// A limit on the size of files stands in for a full disk: the temporary cannot grow, the earlier file must stay.
+// A limit on the size of files stands in for a full disk: the temporary cannot grow, the earlier file must
+// stay.
 TEST(a_full_disk_leaves_the_earlier_file)
 {
     const char *path = in_folder("kept.stl");
@@ -350,7 +372,11 @@ TEST(a_file_over_the_limit_is_refused)
     jali_bytes_free(ctx, &bytes);
 }
 
-typedef struct everything { jali_mesh mesh; jali_contours contours; jali_bitmap bitmap; } everything;
+typedef struct everything {
+    jali_mesh mesh;
+    jali_contours contours;
+    jali_bitmap bitmap;
+} everything;
 
 static jali_status write_everything(jali_context *limited, void *data)
 {
@@ -380,12 +406,19 @@ TEST(every_refused_allocation_is_a_status)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        RUN(decimals_read_back_the_same), RUN(models_read_back_the_same),
-        RUN(vertices_that_float32_cannot_tell_apart_are_noticed), RUN(threads_do_not_change_a_byte),
-        RUN(outside_programs_read_the_files), RUN(flat_formats_say_what_they_should), RUN(a_png_holds_the_bitmap),
-        RUN(a_thumbnail_shows_solid_and_holes), RUN(a_failed_write_leaves_the_earlier_file),
-        RUN(an_unwritable_place_is_a_sentence), RUN(a_full_disk_leaves_the_earlier_file),
-        RUN(modes_and_links_outlive_a_write), RUN(a_file_over_the_limit_is_refused),
+        RUN(decimals_read_back_the_same),
+        RUN(models_read_back_the_same),
+        RUN(vertices_that_float32_cannot_tell_apart_are_noticed),
+        RUN(threads_do_not_change_a_byte),
+        RUN(outside_programs_read_the_files),
+        RUN(flat_formats_say_what_they_should),
+        RUN(a_png_holds_the_bitmap),
+        RUN(a_thumbnail_shows_solid_and_holes),
+        RUN(a_failed_write_leaves_the_earlier_file),
+        RUN(an_unwritable_place_is_a_sentence),
+        RUN(a_full_disk_leaves_the_earlier_file),
+        RUN(modes_and_links_outlive_a_write),
+        RUN(a_file_over_the_limit_is_refused),
         RUN(every_refused_allocation_is_a_status),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

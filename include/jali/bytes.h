@@ -10,7 +10,7 @@ extern "C" {
 
 /// {0} is valid and empty.
 typedef struct jali_bytes {
-    uint8_t *data;         // [capacity], the first `size` are in use
+    uint8_t *data; // [capacity], the first `size` are in use
     size_t size, capacity;
 } jali_bytes;
 

@@ -23,37 +23,37 @@ typedef struct jali_finding {
 
 /// Vertices at exactly the same place count as one, so a triangle soup is judged by its geometry.
 typedef struct jali_check_report {
-    bool closed;     // no open edge
-    bool manifold;   // no crowded edge, no crowded vertex, no repeated triangle
-    bool oriented;   // no misdirected edge, no misplaced shell
-    bool clean;      // no degenerate triangle
-    bool apart;      // no self-intersection
-    bool solid;      // all five, and not empty: it encloses a volume, everywhere once
+    bool closed;   // no open edge
+    bool manifold; // no crowded edge, no crowded vertex, no repeated triangle
+    bool oriented; // no misdirected edge, no misplaced shell
+    bool clean;    // no degenerate triangle
+    bool apart;    // no self-intersection
+    bool solid;    // all five, and not empty: it encloses a volume, everywhere once
 
-    int32_t vertices, triangles, edges;  // as given; edges after welding
-    int32_t repeated_vertices;           // at the place of an earlier one (no flaw)
-    int32_t pieces;                      // bodies: shells that are not voids
-    int32_t shells;                      // surfaces connected through edges
-    int32_t voids;                       // shells that rightly face inwards, inside a body
-    int64_t euler;                       // vertices - edges + triangles, after welding
-    int64_t genus;                       // handles of all shells together; -1 unless closed and manifold
+    int32_t vertices, triangles, edges; // as given; edges after welding
+    int32_t repeated_vertices;          // at the place of an earlier one (no flaw)
+    int32_t pieces;                     // bodies: shells that are not voids
+    int32_t shells;                     // surfaces connected through edges
+    int32_t voids;                      // shells that rightly face inwards, inside a body
+    int64_t euler;                      // vertices - edges + triangles, after welding
+    int64_t genus;                      // handles of all shells together; -1 unless closed and manifold
 
-    jali_finding open_edges;             // edges in one triangle only
-    jali_finding crowded_edges;          // edges in three triangles or more
-    jali_finding crowded_vertices;       // vertices where more than one fan of triangles meets
-    jali_finding misdirected_edges;      // edges that both triangles run in the same direction
-    jali_finding misplaced_shells;       // closed shells inside out, or facing outwards within solid
-    jali_finding degenerate_triangles;   // on a line or a point: no area
-    jali_finding repeated_triangles;     // the three vertices of another triangle
-    jali_finding intersections;          // pairs that meet outside the vertex or edge they share
-    bool intersections_capped;           // there are more than that
-    bool intersections_skipped;          // nobody looked
+    jali_finding open_edges;           // edges in one triangle only
+    jali_finding crowded_edges;        // edges in three triangles or more
+    jali_finding crowded_vertices;     // vertices where more than one fan of triangles meets
+    jali_finding misdirected_edges;    // edges that both triangles run in the same direction
+    jali_finding misplaced_shells;     // closed shells inside out, or facing outwards within solid
+    jali_finding degenerate_triangles; // on a line or a point: no area
+    jali_finding repeated_triangles;   // the three vertices of another triangle
+    jali_finding intersections;        // pairs that meet outside the vertex or edge they share
+    bool intersections_capped;         // there are more than that
+    bool intersections_skipped;        // nobody looked
 
-    double volume_mm3;                   // signed; of a mesh that is not closed it means little
+    double volume_mm3; // signed; of a mesh that is not closed it means little
     double area_mm2;
-    double low_mm[3], high_mm[3];        // bounding box
-    int32_t unit_log2;                   // the tests ran on whole multiples of 2^unit_log2 mm,
-    bool coordinates_exact;              // which hold every coordinate exactly (else: rounded to 60 bits)
+    double low_mm[3], high_mm[3]; // bounding box
+    int32_t unit_log2;            // the tests ran on whole multiples of 2^unit_log2 mm,
+    bool coordinates_exact;       // which hold every coordinate exactly (else: rounded to 60 bits)
 } jali_check_report;
 
 /// Check a mesh. What is wrong with it is in the report, not in the status.
@@ -67,7 +67,8 @@ JALI_API jali_status jali_check(jali_context *ctx, const jali_mesh *mesh, const 
 
 /// The report in plain sentences, a line each, for people.
 ///   out    text  appended to
-JALI_API jali_status jali_check_sentences(jali_context *ctx, const jali_check_report *report, jali_bytes *text);
+JALI_API jali_status jali_check_sentences(jali_context *ctx, const jali_check_report *report,
+                                          jali_bytes *text);
 
 /// The report as one JSON object (version 1), for programs; appended, without a line end.
 ///   version            1
@@ -86,9 +87,10 @@ JALI_API jali_status jali_check_json(jali_context *ctx, const jali_check_report 
 
 /// Read a written STL or 3MF back and compare it with the mesh it was made from.
 ///   in     data   the file, whole
-///   fails  JALI_BROKEN when a triangle is gone, joins other vertices (two that fell on one place in float32, too)
-///          or has moved in float32; what jali_read_model_bytes says
-JALI_API jali_status jali_check_readback(jali_context *ctx, const void *data, size_t size, const jali_mesh *mesh);
+///   fails  JALI_BROKEN when a triangle is gone, joins other vertices (two that fell on one place in float32,
+///          too) or has moved in float32; what jali_read_model_bytes says
+JALI_API jali_status jali_check_readback(jali_context *ctx, const void *data, size_t size,
+                                         const jali_mesh *mesh);
 
 #ifdef __cplusplus
 }

@@ -24,9 +24,10 @@ typedef enum jali_format {
 typedef struct jali_product {
     const jali_mesh *mesh;         // STL, 3MF
     const jali_contours *contours; // SVG, DXF
-    double width_mm, height_mm;    // of the sheet the contours lie on, from their origin; 0 (default): their extent
-    const jali_bitmap *bitmap;     // PNG
-    double pixel_mm;               // 0 (default): not known, no physical size in the PNG
+    double width_mm,
+        height_mm; // of the sheet the contours lie on, from their origin; 0 (default): their extent
+    const jali_bitmap *bitmap; // PNG
+    double pixel_mm;           // 0 (default): not known, no physical size in the PNG
 } jali_product;
 
 typedef struct jali_write_options {
@@ -44,8 +45,8 @@ JALI_API jali_format jali_format_of(const char *path);
 /// Write a file. It appears complete under its name or not at all; an earlier file stays until then.
 ///   in     path  "-" is stdout and then needs opt->format
 ///          opt   NULL means the defaults
-///   fails  JALI_BAD_VALUE (no format, or the product lacks what it needs), JALI_IO, JALI_NO_MEMORY, JALI_LIMIT,
-///          JALI_CANCELLED
+///   fails  JALI_BAD_VALUE (no format, or the product lacks what it needs), JALI_IO, JALI_NO_MEMORY,
+///          JALI_LIMIT, JALI_CANCELLED
 ///   cost   see the format
 JALI_API jali_status jali_write(jali_context *ctx, const char *path, const jali_product *product,
                                 const jali_write_options *opt);
@@ -57,8 +58,8 @@ JALI_API jali_status jali_write_bytes(jali_context *ctx, jali_format format, con
 /// Binary STL. Coordinates are rounded to float32.
 JALI_API jali_status jali_write_stl(jali_context *ctx, const jali_mesh *mesh, jali_bytes *bytes);
 
-/// 3MF: one object in millimetres. Coordinates that are float32 values are written to be read as such (slicers and
-/// jali_read_model do), others as doubles.
+/// 3MF: one object in millimetres. Coordinates that are float32 values are written to be read as such
+/// (slicers and jali_read_model do), others as doubles.
 ///   cost   O(triangles): about 0.3 s and 100 bytes of memory each for a million
 JALI_API jali_status jali_write_3mf(jali_context *ctx, const jali_mesh *mesh, const jali_write_options *opt,
                                     jali_bytes *bytes);

@@ -1,7 +1,8 @@
 // Files: read whole under a limit; written so that nobody ever sees half of one.
 //
-// Writing:  a temporary name in the same folder, fsync, rename, fsync of the folder. Until the rename the earlier
-//           file is untouched; after it the new one is complete. A killed process leaves only *.part behind.
+// Writing:  a temporary name in the same folder, fsync, rename, fsync of the folder. Until the rename the
+//           earlier file is untouched; after it the new one is complete. A killed process leaves only *.part
+//           behind.
 // Limits:   devices and pipes cannot be renamed over, so they are written straight.
 // Checked:  tests/test_write.c: full disk, unwritable folder, cancel, links, modes.
 #include "base/file.h"
@@ -167,7 +168,8 @@ static jali_status read_descriptor(jali_context *ctx, int descriptor, const char
         if (got < 0) TRY(refused(ctx, "read", name, errno));
         bytes->size += (size_t)got;
         if (bytes->size > limit_bytes)
-            TRY(fail(ctx, JALI_LIMIT, "%s is larger than the limit of %.0f MB", name, (double)limit_bytes / 1e6));
+            TRY(fail(ctx, JALI_LIMIT, "%s is larger than the limit of %.0f MB", name,
+                     (double)limit_bytes / 1e6));
         if (got == 0) break;
     }
     bytes->data[bytes->size] = 0;

@@ -6,10 +6,10 @@
 
 /// An output file in the making. {0} is valid and means "not open".
 typedef struct output_file {
-    int descriptor;   // valid while `open`
+    int descriptor; // valid while `open`
     bool open;
-    char *target;     // the file as it will be called, links followed; NULL: written straight (stdout, device)
-    char *temporary;  // the name it has until it is committed
+    char *target;    // the file as it will be called, links followed; NULL: written straight (stdout, device)
+    char *temporary; // the name it has until it is committed
     const char *name; // as the caller gave it, for sentences; must outlive the file
 } output_file;
 

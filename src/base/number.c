@@ -1,8 +1,8 @@
 // Decimal numbers in files.
 //
-// Reading:  up to 19 digits and a power of ten both exact in a double need one rounding, which is the correct one
-//           (Clinger, How to read floating point numbers accurately, 1990). The rest goes to strtod as whole
-//           digits and an exponent, without the point that a locale might spell otherwise.
+// Reading:  up to 19 digits and a power of ten both exact in a double need one rounding, which is the correct
+//           one (Clinger, How to read floating point numbers accurately, 1990). The rest goes to strtod as
+//           whole digits and an exponent, without the point that a locale might spell otherwise.
 // Checked:  tests/test_model.c against strtod; tests/test_write.c reads back random float32 and doubles.
 #include "base/number.h"
 
@@ -19,7 +19,8 @@ static bool is_digit(const char *at, const char *end)
     return at < end && *at >= '0' && *at <= '9';
 }
 
-// The exponent behind an e, held within what any double can use; without digits the e is not part of the number.
+// The exponent behind an e, held within what any double can use; without digits the e is not part of the
+// number.
 static const char *read_exponent(const char *at, const char *end, int32_t *exponent)
 {
     *exponent = 0;
@@ -44,7 +45,8 @@ static double slow_decimal(const char *digits, const char *end, int64_t exponent
     for (; digits < end && (*digits == '.' || is_digit(digits, end)); digits++) {
         if (*digits == '.') continue;
         if (length == 0 && *digits == '0') continue;
-        if (length < DIGITS) text[length++] = *digits;
+        if (length < DIGITS)
+            text[length++] = *digits;
         else {
             rest |= *digits != '0';
             exponent++;
@@ -85,7 +87,8 @@ bool read_decimal(const char **at, const char *end, double *value)
     double result;
     if (significant <= 19 && whole <= (uint64_t)1 << 53 && scale >= -EXACT_POWERS && scale <= EXACT_POWERS)
         result = scale < 0 ? (double)whole / power_of_ten[-scale] : (double)whole * power_of_ten[scale];
-    else result = slow_decimal(digits, digits_end, scale);
+    else
+        result = slow_decimal(digits, digits_end, scale);
     if (!isfinite(result)) return false;
     *value = minus ? -result : result;
     *at = here;

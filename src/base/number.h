@@ -10,8 +10,8 @@ enum { DECIMAL_BYTES = 32 }; // room for the longest text of write_decimal
 /// False when there is none, or it is not finite; *at is then unmoved.
 bool read_decimal(const char **at, const char *end, double *value);
 
-/// Write a finite number in the fewest digits that read back the same: a float32 value as read into a float32,
-/// any other as read into a double. Returns the length, no end mark.
+/// Write a finite number in the fewest digits that read back the same: a float32 value as read into a
+/// float32, any other as read into a double. Returns the length, no end mark.
 int write_decimal(char text[DECIMAL_BYTES], double value);
 
 /// Write a whole number >= 0. Returns the length, no end mark.

@@ -1,8 +1,8 @@
 // Check: is a mesh a solid?
 //
-// Weld equal places, count on whole numbers what the triangles share (mesh/topology), put the vertices on an exact
-// lattice and test every pair of triangles whose boxes touch (mesh/intersect), see how the shells lie in each
-// other (mesh/nesting). No tolerance: a mesh passes when it is right, not when it is nearly so.
+// Weld equal places, count on whole numbers what the triangles share (mesh/topology), put the vertices on an
+// exact lattice and test every pair of triangles whose boxes touch (mesh/intersect), see how the shells lie
+// in each other (mesh/nesting). No tolerance: a mesh passes when it is right, not when it is nearly so.
 //
 // Limits:  coordinates that span more than 60 bits are rounded to 60 (the report says so).
 // Checked: tests/test_check.c; admesh and PrusaSlicer agree on the meshes of the test data.
@@ -80,7 +80,8 @@ static void measure(const jali_mesh *mesh, const topology *t, double *shell_volu
             v[k] = p[2][k] - p[0][k];
         }
         for (int k = 0; k < 3; k++) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-        double volume = n[0] * p[0][0] + n[1] * p[0][1] + n[2] * p[0][2]; // six times; exact on small lattices
+        double volume =
+            n[0] * p[0][0] + n[1] * p[0][1] + n[2] * p[0][2]; // six times; exact on small lattices
         r->area_mm2 += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         r->volume_mm3 += volume;
         if (t->shell[i] >= 0) shell_volume_mm3[t->shell[i]] += volume / 6;
@@ -130,7 +131,8 @@ static void conclude(jali_check_report *r)
     r->genus = r->closed && r->manifold ? r->shells - r->euler / 2 : -1;
 }
 
-static jali_status weld(jali_context *ctx, const jali_mesh *mesh, int32_t (*triangle)[3], jali_check_report *r)
+static jali_status weld(jali_context *ctx, const jali_mesh *mesh, int32_t (*triangle)[3],
+                        jali_check_report *r)
 {
     jali_status status;
     int32_t *first = NULL, places;
@@ -150,7 +152,7 @@ jali_status jali_check(jali_context *ctx, const jali_mesh *mesh, const jali_chec
     jali_status status;
     jali_check_options opt = given ? *given : jali_check_defaults();
     jali_check_report r = {.vertices = mesh->vertex_count, .triangles = mesh->triangle_count};
-    int32_t (*triangle)[3] = NULL, *winding = NULL;
+    int32_t(*triangle)[3] = NULL, *winding = NULL;
     double *volume_mm3 = NULL;
     topology t = {0};
     lattice l = {0};
@@ -162,7 +164,7 @@ jali_status jali_check(jali_context *ctx, const jali_mesh *mesh, const jali_chec
     TRY(mesh_validate(ctx, mesh));
     TRY(ALLOCATE(ctx, triangle, mesh->triangle_count));
     TRY(weld(ctx, mesh, triangle, &r));
-    const int32_t (*welded)[3] = (const int32_t(*)[3])triangle;
+    const int32_t(*welded)[3] = (const int32_t(*)[3])triangle;
     TRY(topology_create(ctx, mesh->vertex_count, mesh->triangle_count, welded, &t));
     report_topology(mesh, &t, &r);
 

@@ -25,12 +25,16 @@ static jali_status compare(jali_context *ctx, const jali_mesh *mesh, const jali_
                 original[b] = a;
             }
             if (renamed[a] != b || original[b] != a)
-                return fail(ctx, JALI_BROKEN, "read back, triangle %d joins other vertices: two fell on one place, or "
-                                              "one on two", t);
+                return fail(ctx, JALI_BROKEN,
+                            "read back, triangle %d joins other vertices: two fell on one place, or "
+                            "one on two",
+                            t);
             if (!same_float32(mesh->vertex[a], read->vertex[b]))
-                return fail(ctx, JALI_BROKEN, "read back, vertex %d lies at (%.9g, %.9g, %.9g) mm, not at (%.9g, %.9g, "
-                                              "%.9g)", a, read->vertex[b][0], read->vertex[b][1], read->vertex[b][2],
-                            mesh->vertex[a][0], mesh->vertex[a][1], mesh->vertex[a][2]);
+                return fail(ctx, JALI_BROKEN,
+                            "read back, vertex %d lies at (%.9g, %.9g, %.9g) mm, not at (%.9g, %.9g, "
+                            "%.9g)",
+                            a, read->vertex[b][0], read->vertex[b][1], read->vertex[b][2], mesh->vertex[a][0],
+                            mesh->vertex[a][1], mesh->vertex[a][2]);
         }
     return JALI_OK;
 }

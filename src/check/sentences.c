@@ -34,7 +34,8 @@ static jali_status say_measures(jali_context *ctx, const jali_check_report *r, j
         TRY(bytes_print(ctx, text, ", %lld hole%s through", (long long)r->genus, r->genus == 1 ? "" : "s"));
     TRY(bytes_print(ctx, text, ".\n"));
     if (r->repeated_vertices)
-        TRY(bytes_print(ctx, text, "%d vertices stand at the place of an earlier one and were taken as one.\n",
+        TRY(bytes_print(ctx, text,
+                        "%d vertices stand at the place of an earlier one and were taken as one.\n",
                         r->repeated_vertices));
     if (!r->coordinates_exact)
         TRY(bytes_print(ctx, text, "The coordinates span more than 60 bits and were rounded to %.3g mm.\n",
@@ -63,11 +64,13 @@ jali_status jali_check_sentences(jali_context *ctx, const jali_check_report *r, 
     for (size_t i = 0; i < sizeof flaws / sizeof *flaws; i++) TRY(say_flaw(ctx, &flaws[i], "", text));
     TRY(say_flaw(ctx, &crossing, r->intersections_capped ? "At least " : "", text));
     if (r->intersections_skipped) TRY(bytes_print(ctx, text, "Self-intersections were not looked for.\n"));
-    if (r->triangles == 0) TRY(bytes_print(ctx, text, "The mesh is empty.\n"));
+    if (r->triangles == 0)
+        TRY(bytes_print(ctx, text, "The mesh is empty.\n"));
     else if (r->solid)
         TRY(bytes_print(ctx, text, "The mesh is a solid: closed, manifold, outward%s.\n",
                         r->intersections_skipped ? "" : ", free of self-intersections"));
-    else TRY(bytes_print(ctx, text, "The mesh is not a sound solid.\n"));
+    else
+        TRY(bytes_print(ctx, text, "The mesh is not a sound solid.\n"));
 done:
     return status;
 }
@@ -89,18 +92,27 @@ static json_t *json_finding(const jali_finding *f, bool at_least)
 static json_t *json_report(const jali_check_report *r)
 {
     bool whole = true;
-    json_t *o = json_pack("{si sb sb sb sb sb sb}", "version", 1, "closed", r->closed, "manifold", r->manifold,
-                          "oriented", r->oriented, "clean", r->clean, "apart", r->apart, "solid", r->solid);
-    json_t *counts = json_pack("{si si si si si si si sI}", "vertices", r->vertices, "triangles", r->triangles,
-                               "edges", r->edges, "repeated_vertices", r->repeated_vertices, "pieces", r->pieces,
-                               "shells", r->shells, "voids", r->voids, "euler", (json_int_t)r->euler);
-    json_t *measures = json_pack("{sf sf s{so so} sf sb}", "volume_mm3", r->volume_mm3, "area_mm2", r->area_mm2,
-                                 "bounds_mm", "low", json_point(r->low_mm), "high", json_point(r->high_mm),
-                                 "unit_mm", ldexp(1, r->unit_log2), "coordinates_exact", r->coordinates_exact);
-    const struct { const char *key; const jali_finding *found; } findings[] = {
-        {"open_edges", &r->open_edges}, {"crowded_edges", &r->crowded_edges},
-        {"crowded_vertices", &r->crowded_vertices}, {"misdirected_edges", &r->misdirected_edges},
-        {"misplaced_shells", &r->misplaced_shells}, {"degenerate_triangles", &r->degenerate_triangles},
+    json_t *o =
+        json_pack("{si sb sb sb sb sb sb}", "version", 1, "closed", r->closed, "manifold", r->manifold,
+                  "oriented", r->oriented, "clean", r->clean, "apart", r->apart, "solid", r->solid);
+    json_t *counts =
+        json_pack("{si si si si si si si sI}", "vertices", r->vertices, "triangles", r->triangles, "edges",
+                  r->edges, "repeated_vertices", r->repeated_vertices, "pieces", r->pieces, "shells",
+                  r->shells, "voids", r->voids, "euler", (json_int_t)r->euler);
+    json_t *measures =
+        json_pack("{sf sf s{so so} sf sb}", "volume_mm3", r->volume_mm3, "area_mm2", r->area_mm2, "bounds_mm",
+                  "low", json_point(r->low_mm), "high", json_point(r->high_mm), "unit_mm",
+                  ldexp(1, r->unit_log2), "coordinates_exact", r->coordinates_exact);
+    const struct {
+        const char *key;
+        const jali_finding *found;
+    } findings[] = {
+        {"open_edges", &r->open_edges},
+        {"crowded_edges", &r->crowded_edges},
+        {"crowded_vertices", &r->crowded_vertices},
+        {"misdirected_edges", &r->misdirected_edges},
+        {"misplaced_shells", &r->misplaced_shells},
+        {"degenerate_triangles", &r->degenerate_triangles},
         {"repeated_triangles", &r->repeated_triangles},
     };
     whole &= json_object_update(o, counts) == 0;

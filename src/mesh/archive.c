@@ -19,7 +19,8 @@ jali_status archive_open(jali_context *ctx, const void *data, size_t size, const
     if (!*archive)
         status = zip_error_code_zip(&error) == ZIP_ER_MEMORY
                      ? fail(ctx, JALI_NO_MEMORY, "no memory to open %s", name)
-                     : fail(ctx, JALI_BAD_INPUT, "%s is a damaged or cut off archive: %s", name, zip_error_strerror(&error));
+                     : fail(ctx, JALI_BAD_INPUT, "%s is a damaged or cut off archive: %s", name,
+                            zip_error_strerror(&error));
     zip_error_fini(&error);
     return status;
 }
@@ -43,13 +44,15 @@ static jali_status check_size(jali_context *ctx, const char *name, const char *e
         return fail(ctx, JALI_LIMIT, "%s: %s unpacks to %.0f MB, more than the limit of %.0f MB", name, entry,
                     (double)known->size / 1e6, (double)limit / 1e6);
     if (known->size > BOMB_BYTES && known->size / BOMB_RATIO > known->comp_size)
-        return fail(ctx, JALI_BAD_INPUT, "%s: %s unpacks from %.3f to %.0f MB, which no model does", name, entry,
-                    (double)known->comp_size / 1e6, (double)known->size / 1e6);
+        return fail(ctx, JALI_BAD_INPUT, "%s: %s unpacks from %.3f to %.0f MB, which no model does", name,
+                    entry, (double)known->comp_size / 1e6, (double)known->size / 1e6);
     return JALI_OK;
 }
 
-jali_status archive_unpack(jali_context *ctx, zip_t *archive, const char *name, const char *entry, uint64_t limit,
-                           jali_status (*take)(void *user, const char *piece, size_t size, bool last), void *user)
+jali_status archive_unpack(jali_context *ctx, zip_t *archive, const char *name, const char *entry,
+                           uint64_t limit,
+                           jali_status (*take)(void *user, const char *piece, size_t size, bool last),
+                           void *user)
 {
     jali_status status;
     zip_file_t *file = NULL;
@@ -65,7 +68,8 @@ jali_status archive_unpack(jali_context *ctx, zip_t *archive, const char *name, 
     do {
         TRY(step(ctx, "read", known.size ? (double)total / (double)known.size : 0));
         got = zip_fread(file, piece, sizeof piece);
-        if (got < 0) TRY(fail(ctx, JALI_BAD_INPUT, "%s: %s is damaged: %s", name, entry, zip_file_strerror(file)));
+        if (got < 0)
+            TRY(fail(ctx, JALI_BAD_INPUT, "%s: %s is damaged: %s", name, entry, zip_file_strerror(file)));
         total += (uint64_t)got;
         if (total > known.size) TRY(fail(ctx, JALI_BAD_INPUT, "%s: %s is larger than it says", name, entry));
         TRY(take(user, piece, (size_t)got, got == 0));

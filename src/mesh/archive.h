@@ -13,11 +13,13 @@ void archive_close(zip_t *archive);
 
 /// Unpack an entry piece by piece.
 ///   in     entry   its name; case does not matter
-///          limit   refused when it unpacks to more bytes, or to 200 times its packed size and more than 16 MB
+///          limit   refused when it unpacks to more bytes, or to 200 times its packed size and over 16 MB
 ///          take    gets each piece; `last` with the final one, which may be empty; stops at a bad status
 ///   fails  JALI_BAD_INPUT (no such entry, damaged, locked), JALI_LIMIT, and what `take` says
-jali_status archive_unpack(jali_context *ctx, zip_t *archive, const char *name, const char *entry, uint64_t limit,
-                           jali_status (*take)(void *user, const char *piece, size_t size, bool last), void *user);
+jali_status archive_unpack(jali_context *ctx, zip_t *archive, const char *name, const char *entry,
+                           uint64_t limit,
+                           jali_status (*take)(void *user, const char *piece, size_t size, bool last),
+                           void *user);
 
 bool archive_has(zip_t *archive, const char *entry);
 

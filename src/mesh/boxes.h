@@ -1,4 +1,4 @@
-// A hierarchy of bounding boxes over items in space: eight children a node, found by comparing eight at a time.
+// A hierarchy of bounding boxes: eight children a node, found by comparing eight at a time.
 //
 // The items are ordered along a Morton curve; node i of level l owns the eight nodes 8 i .. 8 i + 7 of level
 // l - 1, and level 0 owns the items themselves. So the tree is arithmetic: no pointers, no balance to lose.
@@ -24,8 +24,8 @@ typedef struct box_node {
 
 typedef struct box_tree {
     int32_t item_count;
-    int32_t *item;                 // [item_count], the item at each place of the curve
-    box_node *node;                // all levels, the lowest first
+    int32_t *item;  // [item_count], the item at each place of the curve
+    box_node *node; // all levels, the lowest first
     int32_t level_count;
     int32_t first[BOX_LEVELS + 1]; // [level_count + 1], the nodes of level l
 } box_tree;
@@ -44,8 +44,10 @@ static inline unsigned box_touches(const box_node *node, const box *b)
     for (int half = 0; half < 2; half++) {
         __m128 all = _mm_castsi128_ps(_mm_set1_epi32(-1));
         for (int k = 0; k < 3; k++) {
-            all = _mm_and_ps(all, _mm_cmple_ps(_mm_loadu_ps(&node->low[k][4 * half]), _mm_set1_ps(b->high[k])));
-            all = _mm_and_ps(all, _mm_cmpge_ps(_mm_loadu_ps(&node->high[k][4 * half]), _mm_set1_ps(b->low[k])));
+            all =
+                _mm_and_ps(all, _mm_cmple_ps(_mm_loadu_ps(&node->low[k][4 * half]), _mm_set1_ps(b->high[k])));
+            all =
+                _mm_and_ps(all, _mm_cmpge_ps(_mm_loadu_ps(&node->high[k][4 * half]), _mm_set1_ps(b->low[k])));
         }
         mask |= (unsigned)_mm_movemask_ps(all) << 4 * half;
     }
@@ -66,7 +68,10 @@ typedef struct box_walk {
     const box_tree *tree;
     const box *b;
     int32_t from, depth;
-    struct { int32_t level, node; unsigned mask; } stack[BOX_LEVELS];
+    struct {
+        int32_t level, node;
+        unsigned mask;
+    } stack[BOX_LEVELS];
 } box_walk;
 
 static inline void box_walk_enter(box_walk *walk, int32_t level, int32_t node)

@@ -9,7 +9,7 @@ enum { COORDINATE_BITS = 60 };
 static void bit_range(double value, int *lowest, int *highest)
 {
     int exponent;
-    double fraction = frexp(value, &exponent);            // value = fraction 2^exponent, 1/2 <= |fraction| < 1
+    double fraction = frexp(value, &exponent); // value = fraction 2^exponent, 1/2 <= |fraction| < 1
     int64_t whole = (int64_t)ldexp(fraction, 53);
     *highest = exponent - 1;
     *lowest = exponent - 53 + __builtin_ctzll((uint64_t)whole);

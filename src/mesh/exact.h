@@ -1,8 +1,9 @@
-// Exact geometry on vertices: coordinates as whole numbers of one common unit, and the sign of every determinant.
+// Exact geometry on vertices: whole numbers of one common unit, and the sign of every determinant.
 //
-// A double is a whole number times a power of two, so the vertices of a mesh share a unit 2^k in which all are
-// whole. Plates of ours need 24 bits, most float32 models fewer than 60. A mesh that spans more is rounded to 60 bits
-// of its largest coordinate (2^-59 of it: 2e-15 mm at 1 m), and says so; from there on nothing is rounded again.
+// A double is a whole number times a power of two, so the vertices of a mesh share a unit 2^k in which all
+// are whole. Plates of ours need 24 bits, most float32 models fewer than 60. A mesh that spans more is
+// rounded to 60 bits of its largest coordinate (2^-59 of it: 2e-15 mm at 1 m), and says so; from there on
+// nothing is rounded again.
 //
 // Narrow: differences fit 32 bits, so a normal fits 64 and a dot product 128.
 // Wide:   differences fit 62 bits, so a normal fits 128 and a dot product 192.

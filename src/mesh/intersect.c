@@ -1,11 +1,13 @@
 // Self-intersections of a mesh, exactly.
 //
-// Two triangles may share a vertex, an edge, or nothing; anything beyond that is an intersection, also a mere touch
-// and also an overlap of coplanar neighbours. Each case is decided by signs of determinants (mesh/exact.h):
+// Two triangles may share a vertex, an edge, or nothing; anything beyond that is an intersection, also a mere
+// touch and also an overlap of coplanar neighbours. Each case is decided by signs of determinants
+// (mesh/exact.h):
 //
 //   an edge    they overlap only when coplanar and both on the same side of it;
-//   a vertex   both are convex and contain it, so what they share is a segment or a sector from it: it ends on
-//              the edge opposite to the vertex of one of them, inside the other. Coplanar: the sectors overlap;
+//   a vertex   both are convex and contain it, so what they share is a segment or a sector from it: it ends
+//              on the edge opposite to the vertex of one of them, inside the other. Coplanar: the sectors
+//              overlap;
 //   nothing    an edge of one meets the other, or, coplanar, no line through an edge separates them.
 //
 // Source:  the separating-line test is the separating-axis theorem in the plane; the rest follows from it.
@@ -36,7 +38,8 @@ static bool segment_meets_in_plane(bool narrow, int dropped, point p, point q, c
 }
 
 // Does the closed segment p, q touch the closed triangle t? Its ends lie on the given sides of t's plane.
-static bool segment_meets(bool narrow, point p, point q, int side_p, int side_q, const point t[3], const normal *n)
+static bool segment_meets(bool narrow, point p, point q, int side_p, int side_q, const point t[3],
+                          const normal *n)
 {
     if (side_p * side_q > 0) return false;
     if (side_p == 0 && side_q == 0) return segment_meets_in_plane(narrow, axis_of(n), p, q, t);
@@ -70,7 +73,8 @@ static bool apart_meet(bool narrow, const point a[3], const point b[3])
     if (side_b[0] == side_b[1] && side_b[1] == side_b[2]) {
         if (side_b[0] != 0) return false;
         int dropped = axis_of(&na);
-        return !separated_by_an_edge_of(narrow, dropped, a, b) && !separated_by_an_edge_of(narrow, dropped, b, a);
+        return !separated_by_an_edge_of(narrow, dropped, a, b) &&
+               !separated_by_an_edge_of(narrow, dropped, b, a);
     }
     normal nb = normal_of(narrow, b[0], b[1], b[2]);
     for (int k = 0; k < 3; k++) side_a[k] = side_of(narrow, &nb, b[0], a[k]);
@@ -119,7 +123,8 @@ static bool at_vertex_meet(bool narrow, const point a[3], const point b[3])
     normal nb = normal_of(narrow, b[0], b[1], b[2]);
     int a1 = side_of(narrow, &nb, b[0], a[1]), a2 = side_of(narrow, &nb, b[0], a[2]);
     if (a1 * a2 > 0) return false;
-    return segment_meets(narrow, b[1], b[2], b1, b2, a, &na) || segment_meets(narrow, a[1], a[2], a1, a2, b, &nb);
+    return segment_meets(narrow, b[1], b[2], b1, b2, a, &na) ||
+           segment_meets(narrow, a[1], a[2], a1, a2, b, &nb);
 }
 
 // a[0], a[1] and b[0], b[1] are one edge, either way round.
@@ -128,7 +133,8 @@ static bool at_edge_meet(bool narrow, const point a[3], const point b[3])
     normal n = normal_of(narrow, a[0], a[1], a[2]);
     if (side_of(narrow, &n, a[0], b[2]) != 0) return false;
     int dropped = axis_of(&n);
-    return turn_in_plane(narrow, dropped, a[0], a[1], a[2]) == turn_in_plane(narrow, dropped, a[0], a[1], b[2]);
+    return turn_in_plane(narrow, dropped, a[0], a[1], a[2]) ==
+           turn_in_plane(narrow, dropped, a[0], a[1], b[2]);
 }
 
 bool triangles_meet(const lattice *l, const int32_t a[3], const int32_t b[3])

@@ -12,21 +12,22 @@ typedef struct surface {
     const int32_t (*triangle)[3]; // welded
     box_tree tree;                // its items number `face`
     int32_t face_count;
-    int32_t *face;                // [face_count], the triangles that have an area, ascending
-    finding flat_triangles;       // without area: on one line or one point; a is a triangle
+    int32_t *face;          // [face_count], the triangles that have an area, ascending
+    finding flat_triangles; // without area: on one line or one point; a is a triangle
 } surface;
 
 jali_status surface_create(jali_context *ctx, const lattice *l, int32_t triangle_count,
                            const int32_t (*triangle)[3], surface *s);
 void surface_free(jali_context *ctx, surface *s);
 
-/// Do two triangles, given by welded vertices and each with an area, meet anywhere but in the vertex or edge they
-/// share? Triangles with the same three vertices are left to topology's repeated_triangles and do not count.
+/// Do two triangles, given by welded vertices and each with an area, meet anywhere but in the vertex or edge
+/// they share? Triangles with the same three vertices are left to topology's repeated_triangles and do not
+/// count.
 bool triangles_meet(const lattice *l, const int32_t a[3], const int32_t b[3]);
 
 /// Count the pairs that do.
 ///   out    found   a, b are triangles: of all pairs the one with the lowest a, then b
-///          capped  more than JALI's cap of a million pairs in one block of 1024 triangles: the count is at least so
+///          capped  some block of 1024 triangles had more than a million pairs: the count is at least so
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT
 ///   cost   O(pairs of touching boxes); the same for any number of threads
 jali_status count_intersections(jali_context *ctx, const surface *s, finding *found, bool *capped);

@@ -30,12 +30,13 @@ jali_status mesh_validate(jali_context *ctx, const jali_mesh *mesh)
     for (int32_t i = 0; i < mesh->vertex_count; i++)
         for (int32_t k = 0; k < 3; k++)
             if (!isfinite(mesh->vertex[i][k]))
-                return fail(ctx, JALI_BAD_INPUT, "coordinate %c of vertex %d is not a finite number", 'x' + k, i);
+                return fail(ctx, JALI_BAD_INPUT, "coordinate %c of vertex %d is not a finite number", 'x' + k,
+                            i);
     for (int32_t t = 0; t < mesh->triangle_count; t++)
         for (int32_t k = 0; k < 3; k++)
             if (mesh->triangle[t][k] < 0 || mesh->triangle[t][k] >= mesh->vertex_count)
-                return fail(ctx, JALI_BAD_INPUT, "triangle %d names vertex %d; there are %d, counted from 0", t,
-                            mesh->triangle[t][k], mesh->vertex_count);
+                return fail(ctx, JALI_BAD_INPUT, "triangle %d names vertex %d; there are %d, counted from 0",
+                            t, mesh->triangle[t][k], mesh->vertex_count);
     return JALI_OK;
 }
 

@@ -1,8 +1,8 @@
 // How shells lie in each other.
 //
-// A vertical ray goes up from a vertex of the shell; each triangle it crosses counts by its orientation. The ray is
-// moved aside by infinitely little, (e^2, e) in x and y, so that it meets no edge and no vertex: a zero
-// determinant takes the sign of its first term in e that is not zero (simulation of simplicity).
+// A vertical ray goes up from a vertex of the shell; each triangle it crosses counts by its orientation. The
+// ray is moved aside by infinitely little, (e^2, e) in x and y, so that it meets no edge and no vertex: a
+// zero determinant takes the sign of its first term in e that is not zero (simulation of simplicity).
 //
 // Source:  Edelsbrunner and Muecke, Simulation of Simplicity, 1990.
 // Limits:  shells that cross or touch have no inside to speak of; the intersection count tells.

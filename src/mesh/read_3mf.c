@@ -1,10 +1,10 @@
-// 3MF: a ZIP archive with an XML model; objects of triangles, components that place objects, a build that places
-// both.
+// 3MF: a ZIP archive with an XML model; objects of triangles, components that place objects, a build that
+// places both.
 //
 // Source:  3MF Core Specification 1.3 (units, transforms as rows, objects defined before they are used).
-// Limits:  coordinates are rounded to float32 once placed, as slicers do: what is judged is what gets printed.
-//          No production extension (parts in other files), no slices, no beams: what they say is not read. Nothing
-//          with a document type is accepted, so there are no entities to expand.
+// Limits:  coordinates are rounded to float32 once placed, as slicers do: what is judged is what gets
+//          printed. No production extension (parts in other files), no slices, no beams: what they say is not
+//          read. Nothing with a document type is accepted, so there are no entities to expand.
 // Checked: tests/test_model.c, fuzz/fuzz_3mf.c.
 #include "mesh/scene.h"
 
@@ -36,7 +36,7 @@ static void refuse(model *m, jali_status status)
 }
 
 #define REFUSE(m, ...) refuse((m), fail((m)->ctx, JALI_BAD_INPUT, __VA_ARGS__))
-#define LINE(m) ((unsigned long)XML_GetCurrentLineNumber((m)->parser))
+#define LINE(m)        ((unsigned long)XML_GetCurrentLineNumber((m)->parser))
 
 static const char *attribute(const XML_Char **attributes, const char *name)
 {
@@ -49,7 +49,8 @@ static bool whole_number(const char *text, uint32_t limit, uint32_t *value)
 {
     uint64_t number = 0;
     if (!text || !*text) return false;
-    for (; *text >= '0' && *text <= '9' && number <= limit; text++) number = number * 10 + (uint64_t)(*text - '0');
+    for (; *text >= '0' && *text <= '9' && number <= limit; text++)
+        number = number * 10 + (uint64_t)(*text - '0');
     *value = (uint32_t)number;
     return *text == 0 && number <= limit;
 }
@@ -80,8 +81,10 @@ static size_t place_of_id(const model *m, uint32_t id)
     size_t low = 0, high = m->scene.object_count;
     while (low < high) {
         size_t middle = (low + high) / 2;
-        if (m->scene.object[m->by_id[middle]].id < id) low = middle + 1;
-        else high = middle;
+        if (m->scene.object[m->by_id[middle]].id < id)
+            low = middle + 1;
+        else
+            high = middle;
     }
     return low;
 }
@@ -115,9 +118,10 @@ static void start_object(model *m, const XML_Char **attributes)
     size_t place = place_of_id(m, id);
     memmove(m->by_id + place + 1, m->by_id + place, (m->scene.object_count - place) * sizeof *m->by_id);
     m->by_id[place] = (int32_t)m->scene.object_count;
-    m->scene.object[m->scene.object_count++] = (object){.id = id, .first_vertex = (int32_t)m->scene.vertex_count,
-                                            .first_triangle = (int32_t)m->scene.triangle_count,
-                                            .first_part = (int32_t)m->scene.part_count};
+    m->scene.object[m->scene.object_count++] = (object){.id = id,
+                                                        .first_vertex = (int32_t)m->scene.vertex_count,
+                                                        .first_triangle = (int32_t)m->scene.triangle_count,
+                                                        .first_part = (int32_t)m->scene.part_count};
     m->in_object = true;
 }
 
@@ -131,11 +135,13 @@ static void add_vertex(model *m, const XML_Char **attributes)
             return;
         }
     jali_status status = m->scene.vertex_count >= (size_t)3 * (size_t)m->file->opt.max_triangles
-        ? fail(m->ctx, JALI_LIMIT, "%s has more vertices than %d triangles can use", m->file->name,
-               m->file->opt.max_triangles)
-        : GROW(m->ctx, m->scene.vertex, m->vertex_room, m->scene.vertex_count + 1);
-    if (status == JALI_OK) memcpy(m->scene.vertex[m->scene.vertex_count++], at, sizeof at);
-    else refuse(m, status);
+                             ? fail(m->ctx, JALI_LIMIT, "%s has more vertices than %d triangles can use",
+                                    m->file->name, m->file->opt.max_triangles)
+                             : GROW(m->ctx, m->scene.vertex, m->vertex_room, m->scene.vertex_count + 1);
+    if (status == JALI_OK)
+        memcpy(m->scene.vertex[m->scene.vertex_count++], at, sizeof at);
+    else
+        refuse(m, status);
 }
 
 static void add_triangle(model *m, const XML_Char **attributes)
@@ -153,10 +159,13 @@ static void add_triangle(model *m, const XML_Char **attributes)
         t[k] = (int32_t)index;
     }
     jali_status status = m->scene.triangle_count >= (size_t)m->file->opt.max_triangles
-        ? fail(m->ctx, JALI_LIMIT, "%s has more than %d triangles", m->file->name, m->file->opt.max_triangles)
-        : GROW(m->ctx, m->scene.triangle, m->triangle_room, m->scene.triangle_count + 1);
-    if (status == JALI_OK) memcpy(m->scene.triangle[m->scene.triangle_count++], t, sizeof t);
-    else refuse(m, status);
+                             ? fail(m->ctx, JALI_LIMIT, "%s has more than %d triangles", m->file->name,
+                                    m->file->opt.max_triangles)
+                             : GROW(m->ctx, m->scene.triangle, m->triangle_room, m->scene.triangle_count + 1);
+    if (status == JALI_OK)
+        memcpy(m->scene.triangle[m->scene.triangle_count++], t, sizeof t);
+    else
+        refuse(m, status);
 }
 
 // A component or an item of the build: both place an object that was defined before.
@@ -170,18 +179,25 @@ static void add_placed(model *m, const XML_Char **attributes, bool component)
         return;
     }
     size_t *count = component ? &m->scene.part_count : &m->scene.item_count;
-    jali_status status = *count >= MAX_PLACED
-        ? fail(m->ctx, JALI_LIMIT, "%s places objects more than %d times", m->file->name, MAX_PLACED)
+    jali_status status =
+        *count >= MAX_PLACED
+            ? fail(m->ctx, JALI_LIMIT, "%s places objects more than %d times", m->file->name, MAX_PLACED)
         : component ? GROW(m->ctx, m->scene.part, m->part_room, *count + 1)
                     : GROW(m->ctx, m->scene.item, m->item_room, *count + 1);
-    if (status == JALI_OK) (component ? m->scene.part : m->scene.item)[(*count)++] = p;
-    else refuse(m, status);
+    if (status == JALI_OK)
+        (component ? m->scene.part : m->scene.item)[(*count)++] = p;
+    else
+        refuse(m, status);
 }
 
 static void start_model(model *m, const XML_Char **attributes)
 {
-    static const struct { const char *name; double mm; } units[] = {
-        {"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10}, {"inch", 25.4}, {"foot", 304.8}, {"meter", 1000},
+    static const struct {
+        const char *name;
+        double mm;
+    } units[] = {
+        {"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10},
+        {"inch", 25.4},   {"foot", 304.8},   {"meter", 1000},
     };
     const char *unit = attribute(attributes, "unit");
     m->is_model = true;
@@ -196,13 +212,20 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
     model *m = user;
     if (m->status != JALI_OK || strncmp(name, CORE, strlen(CORE)) != 0) return;
     name += strlen(CORE);
-    if (strcmp(name, "vertex") == 0 && m->in_object) add_vertex(m, attributes);
-    else if (strcmp(name, "triangle") == 0 && m->in_object) add_triangle(m, attributes);
-    else if (strcmp(name, "object") == 0) start_object(m, attributes);
-    else if (strcmp(name, "component") == 0 && m->in_object) add_placed(m, attributes, true);
-    else if (strcmp(name, "build") == 0) m->in_build = true;
-    else if (strcmp(name, "item") == 0 && m->in_build) add_placed(m, attributes, false);
-    else if (strcmp(name, "model") == 0) start_model(m, attributes);
+    if (strcmp(name, "vertex") == 0 && m->in_object)
+        add_vertex(m, attributes);
+    else if (strcmp(name, "triangle") == 0 && m->in_object)
+        add_triangle(m, attributes);
+    else if (strcmp(name, "object") == 0)
+        start_object(m, attributes);
+    else if (strcmp(name, "component") == 0 && m->in_object)
+        add_placed(m, attributes, true);
+    else if (strcmp(name, "build") == 0)
+        m->in_build = true;
+    else if (strcmp(name, "item") == 0 && m->in_build)
+        add_placed(m, attributes, false);
+    else if (strcmp(name, "model") == 0)
+        start_model(m, attributes);
 }
 
 // The sizes of an object with all its components, which are complete because they came before.
@@ -224,7 +247,8 @@ static void finish_object(model *m)
         o->depth = MAX(o->depth, p->depth + 1);
     }
     if (o->depth > MAX_DEPTH)
-        refuse(m, fail(m->ctx, JALI_LIMIT, "%s nests components more than %d deep", m->file->name, MAX_DEPTH));
+        refuse(m,
+               fail(m->ctx, JALI_LIMIT, "%s nests components more than %d deep", m->file->name, MAX_DEPTH));
 }
 
 static void XMLCALL on_end(void *user, const XML_Char *name)
@@ -232,8 +256,10 @@ static void XMLCALL on_end(void *user, const XML_Char *name)
     model *m = user;
     if (m->status != JALI_OK || strncmp(name, CORE, strlen(CORE)) != 0) return;
     name += strlen(CORE);
-    if (strcmp(name, "object") == 0 && m->in_object) finish_object(m);
-    else if (strcmp(name, "build") == 0) m->in_build = false;
+    if (strcmp(name, "object") == 0 && m->in_object)
+        finish_object(m);
+    else if (strcmp(name, "build") == 0)
+        m->in_build = false;
 }
 
 static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char *system_id,
@@ -264,7 +290,8 @@ static jali_status feed(void *user, const char *piece, size_t size, bool last)
     if (XML_Parse(m->parser, piece, (int)size, last) == XML_STATUS_OK) return JALI_OK;
     if (m->status != JALI_OK) return m->status;
     enum XML_Error error = XML_GetErrorCode(m->parser);
-    if (error == XML_ERROR_NO_MEMORY) return fail(m->ctx, JALI_NO_MEMORY, "no memory to parse %s", m->file->name);
+    if (error == XML_ERROR_NO_MEMORY)
+        return fail(m->ctx, JALI_NO_MEMORY, "no memory to parse %s", m->file->name);
     return fail(m->ctx, JALI_BAD_INPUT, "%s, line %lu: %s", m->file->name, LINE(m), XML_ErrorString(error));
 }
 
@@ -276,7 +303,8 @@ static jali_status parse_part(model *m, zip_t *archive, const char *part, XML_St
     XML_SetUserData(m->parser, m);
     XML_SetElementHandler(m->parser, start, end);
     XML_SetStartDoctypeDeclHandler(m->parser, on_doctype);
-    jali_status status = archive_unpack(m->ctx, archive, m->file->name, part, m->file->opt.max_bytes, feed, m);
+    jali_status status =
+        archive_unpack(m->ctx, archive, m->file->name, part, m->file->opt.max_bytes, feed, m);
     XML_ParserFree(m->parser);
     m->parser = NULL;
     return status;
@@ -293,7 +321,8 @@ jali_status read_3mf(jali_context *ctx, const model_file *file, jali_mesh *mesh)
     model m = {.ctx = ctx, .file = file};
     zip_t *archive = NULL;
     TRY(archive_open(ctx, file->data, file->size, file->name, &archive));
-    if (archive_has(archive, "_rels/.rels")) TRY(parse_part(&m, archive, "_rels/.rels", on_relationship, NULL));
+    if (archive_has(archive, "_rels/.rels"))
+        TRY(parse_part(&m, archive, "_rels/.rels", on_relationship, NULL));
     if (!m.start_part[0]) strcpy(m.start_part, "3D/3dmodel.model");
     TRY(parse_part(&m, archive, m.start_part, on_start, on_end));
     if (!m.is_model) TRY(fail(ctx, JALI_BAD_INPUT, "%s: %s is no 3MF model", file->name, m.start_part));

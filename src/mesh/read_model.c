@@ -16,9 +16,18 @@ static bool begins_with(const model_file *file, const char *magic, size_t length
 // What the user may have meant, for the sentence.
 static jali_status refuse_type(jali_context *ctx, const model_file *file)
 {
-    const struct { const char *magic; size_t length; const char *what; } known[] = {
-        {"\x89PNG", 4, "a PNG picture"}, {"\xff\xd8\xff", 3, "a JPEG picture"}, {"RIFF", 4, "a WebP picture"},
-        {"ply", 3, "a PLY model"}, {"OFF", 3, "an OFF model"}, {"<", 1, "an XML text"}, {"%PDF", 4, "a PDF"},
+    const struct {
+        const char *magic;
+        size_t length;
+        const char *what;
+    } known[] = {
+        {"\x89PNG", 4, "a PNG picture"},
+        {"\xff\xd8\xff", 3, "a JPEG picture"},
+        {"RIFF", 4, "a WebP picture"},
+        {"ply", 3, "a PLY model"},
+        {"OFF", 3, "an OFF model"},
+        {"<", 1, "an XML text"},
+        {"%PDF", 4, "a PDF"},
     };
     if (file->size == 0) return fail(ctx, JALI_BAD_INPUT, "%s is empty; a model is STL or 3MF", file->name);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
@@ -43,7 +52,8 @@ jali_status jali_read_model_bytes(jali_context *ctx, const void *data, size_t si
     return refuse_type(ctx, &file);
 }
 
-jali_status jali_read_model(jali_context *ctx, const char *path, const jali_model_options *opt, jali_mesh *mesh)
+jali_status jali_read_model(jali_context *ctx, const char *path, const jali_model_options *opt,
+                            jali_mesh *mesh)
 {
     jali_status status;
     jali_bytes bytes = {0};

@@ -1,8 +1,9 @@
 // STL: binary and ASCII.
 //
-// Which of the two cannot be told from the first word: many binary files begin with "solid". A file whose length
-// is exactly what its triangle count asks for is binary; else a text with "solid" and "facet" is ASCII; else it
-// is a binary file that is cut off, or followed by something. Corners are float32 and welded where they are equal.
+// Which of the two cannot be told from the first word: many binary files begin with "solid". A file whose
+// length is exactly what its triangle count asks for is binary; else a text with "solid" and "facet" is
+// ASCII; else it is a binary file that is cut off, or followed by something. Corners are float32 and welded
+// where they are equal.
 //
 // Limits:  colours and attribute bytes are ignored, stored normals too: the order of the corners decides.
 // Checked: tests/test_model.c, fuzz/fuzz_stl.c.
@@ -58,7 +59,8 @@ bool looks_like_stl(const model_file *file)
 }
 
 // Triangle soup to mesh: the corners are welded, corner i of triangle t being 3 t + i.
-static jali_status weld_soup(jali_context *ctx, const double (*corner)[3], int32_t triangle_count, jali_mesh *mesh)
+static jali_status weld_soup(jali_context *ctx, const double (*corner)[3], int32_t triangle_count,
+                             jali_mesh *mesh)
 {
     jali_status status;
     int32_t *first = NULL, distinct, next = 0;
@@ -91,7 +93,7 @@ static jali_status check_count(jali_context *ctx, const model_file *file, uint64
 static jali_status read_binary(jali_context *ctx, const model_file *file, jali_mesh *mesh)
 {
     jali_status status;
-    double (*corner)[3] = NULL;
+    double(*corner)[3] = NULL;
     uint32_t count = little_endian(file->data + 80);
     if (announced_bytes(file) > file->size)
         TRY(fail(ctx, JALI_BAD_INPUT, "%s is cut off, or no STL: %u triangles need %llu bytes, it has %zu",
@@ -105,8 +107,9 @@ static jali_status read_binary(jali_context *ctx, const model_file *file, jali_m
             float value;
             memcpy(&value, &bits, sizeof value);
             if (!isfinite(value))
-                TRY(fail(ctx, JALI_BAD_INPUT, "%s: triangle %u of %u has a coordinate that is not a finite number",
-                         file->name, t + 1, count));
+                TRY(fail(ctx, JALI_BAD_INPUT,
+                         "%s: triangle %u of %u has a coordinate that is not a finite number", file->name,
+                         t + 1, count));
             corner[3 * (size_t)t + (size_t)i / 3][i % 3] = value;
         }
     }
@@ -158,7 +161,7 @@ static jali_status take_corner(jali_context *ctx, const model_file *file, text *
 static jali_status read_ascii(jali_context *ctx, const model_file *file, jali_mesh *mesh)
 {
     jali_status status = JALI_OK;
-    double (*corner)[3] = NULL;
+    double(*corner)[3] = NULL;
     size_t capacity = 0, count = 0;
     int32_t in_loop = 0;
     bool ended = false;
@@ -182,7 +185,8 @@ static jali_status read_ascii(jali_context *ctx, const model_file *file, jali_me
         }
     }
     if (in_loop || !ended)
-        TRY(fail(ctx, JALI_BAD_INPUT, "%s is cut off at line %lld: no endsolid", file->name, (long long)in.line));
+        TRY(fail(ctx, JALI_BAD_INPUT, "%s is cut off at line %lld: no endsolid", file->name,
+                 (long long)in.line));
     TRY(check_count(ctx, file, count / 3));
     TRY(weld_soup(ctx, (const double(*)[3])corner, (int32_t)(count / 3), mesh));
 done:

@@ -1,4 +1,4 @@
-// Placing the objects of a 3MF: components are walked with a stack of our own, sizes are known before the walk.
+// Placing the objects of a 3MF; sizes are known before the walk.
 #include "mesh/scene.h"
 
 // First a, then b.
@@ -8,7 +8,8 @@ static transform after(const transform *a, const transform *b)
     for (int row = 0; row < 4; row++)
         for (int k = 0; k < 3; k++) {
             const double *r = a->m + 3 * row;
-            c.m[3 * row + k] = r[0] * b->m[k] + r[1] * b->m[3 + k] + r[2] * b->m[6 + k] + (row == 3 ? b->m[9 + k] : 0);
+            c.m[3 * row + k] =
+                r[0] * b->m[k] + r[1] * b->m[3 + k] + r[2] * b->m[6 + k] + (row == 3 ? b->m[9 + k] : 0);
         }
     return c;
 }
@@ -17,7 +18,8 @@ static bool mirrors(const transform *t)
 {
     const double *m = t->m;
     return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
-               m[2] * (m[3] * m[7] - m[4] * m[6]) < 0;
+               m[2] * (m[3] * m[7] - m[4] * m[6]) <
+           0;
 }
 
 // Append one object's own triangles; a mirror image is turned so that outside stays outside.
@@ -32,16 +34,20 @@ static void place_object(const scene *s, const object *o, const transform *t, ja
     for (int32_t i = 0; i < o->vertex_count; i++) {
         const double *p = s->vertex[o->first_vertex + i];
         for (int k = 0; k < 3; k++)
-            mesh->vertex[mesh->vertex_count][k] =
-                (float)(s->unit_mm * (p[0] * t->m[k] + p[1] * t->m[3 + k] + p[2] * t->m[6 + k] + t->m[9 + k]));
+            mesh->vertex[mesh->vertex_count][k] = (float)(s->unit_mm * (p[0] * t->m[k] + p[1] * t->m[3 + k] +
+                                                                        p[2] * t->m[6 + k] + t->m[9 + k]));
         mesh->vertex_count++;
     }
 }
 
-// Walk the components below one item with a stack of our own; its depth was checked when the objects were read.
+// Walk the components below one item with a stack of our own; its depth was checked when the objects were
+// read.
 static void place_item(const scene *s, const placed *item, jali_mesh *mesh)
 {
-    struct { placed here; int32_t next; } stack[MAX_DEPTH + 1];
+    struct {
+        placed here;
+        int32_t next;
+    } stack[MAX_DEPTH + 1];
     int32_t depth = 0;
     stack[depth].here = *item;
     stack[depth++].next = 0;

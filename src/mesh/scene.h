@@ -1,5 +1,5 @@
-// What a 3MF describes: objects of triangles, components that place objects in objects, a build that places them
-// for good.
+// What a 3MF describes: objects of triangles, components that place objects in objects, a build that places
+// them for good.
 #ifndef MESH_SCENE_H
 #define MESH_SCENE_H
 
@@ -20,17 +20,17 @@ typedef struct placed {
 typedef struct object {
     uint32_t id;
     int32_t first_vertex, vertex_count, first_triangle, triangle_count;
-    int32_t first_part, part_count;         // its components
+    int32_t first_part, part_count;                 // its components
     int64_t all_vertices, all_triangles, instances; // with those of its components
-    int32_t depth;                          // 1 without components
+    int32_t depth;                                  // 1 without components
 } object;
 
 typedef struct scene {
     double unit_mm;
-    double (*vertex)[3];     // [vertex_count], of all objects, in units
-    int32_t (*triangle)[3];  // [triangle_count], indices within their object
-    object *object;          // [object_count], components refer to earlier ones only
-    placed *part, *item;     // [part_count], [item_count]: components of all objects; the build
+    double (*vertex)[3];    // [vertex_count], of all objects, in units
+    int32_t (*triangle)[3]; // [triangle_count], indices within their object
+    object *object;         // [object_count], components refer to earlier ones only
+    placed *part, *item;    // [part_count], [item_count]: components of all objects; the build
     size_t vertex_count, triangle_count, object_count, part_count, item_count;
 } scene;
 

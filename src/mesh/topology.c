@@ -1,8 +1,8 @@
 // Edges, fans and shells of a mesh.
 //
 // Every side of a triangle goes into the bucket of its lower vertex; a sorted bucket shows each edge as a run
-// of equal higher vertices. Triangles that share an edge are united (shells), and so are their corners at both ends
-// (fans): a vertex whose corners do not end as one set is shared by two fans.
+// of equal higher vertices. Triangles that share an edge are united (shells), and so are their corners at
+// both ends (fans): a vertex whose corners do not end as one set is shared by two fans.
 //
 // Checked: tests/test_check.c: cubes that share an edge or a vertex, open boxes, a flipped face, a torus.
 #include "mesh/topology.h"
@@ -16,11 +16,11 @@ typedef struct side {
 
 typedef struct edge_pass {
     const int32_t (*triangle)[3];
-    int32_t *start;   // [vertex_count + 1], the bucket of each vertex
-    side *side;       // [3 triangle_count]
-    int32_t *above;   // [triangle_count], union-find over triangles
-    int32_t *fan;     // [3 triangle_count], union-find over corners
-    bool *flawed;     // [triangle_count]
+    int32_t *start; // [vertex_count + 1], the bucket of each vertex
+    side *side;     // [3 triangle_count]
+    int32_t *above; // [triangle_count], union-find over triangles
+    int32_t *fan;   // [3 triangle_count], union-find over corners
+    bool *flawed;   // [triangle_count]
     topology *t;
 } edge_pass;
 
@@ -40,8 +40,10 @@ static void unite(int32_t *parent, int32_t i, int32_t j)
 {
     i = root_of(parent, i);
     j = root_of(parent, j);
-    if (i < j) parent[j] = i;
-    else parent[i] = j;
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
 }
 
 static void note(finding *f, int32_t a, int32_t b)
@@ -62,8 +64,9 @@ static bool side_before(const side *a, const side *b)
 // Shell sort: an insertion sort for the usual six sides, bearable for the hub of a fan of thousands.
 static void sort_sides(side *s, int32_t count)
 {
-    static const int32_t gaps[] = {8858370, 3937053, 1749801, 777690, 345640, 153618, 68275, 30345, 13487, 5994,
-                                   2664, 1184, 526, 234, 104, 46, 20, 9, 4, 1}; // ratio 9 / 4, after Tokuda
+    static const int32_t gaps[] = {8858370, 3937053, 1749801, 777690, 345640, 153618, 68275,
+                                   30345,   13487,   5994,    2664,   1184,   526,    234,
+                                   104,     46,      20,      9,      4,      1}; // ratio 9 / 4, after Tokuda
     for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
         for (int32_t i = gaps[g]; i < count; i++) {
             side moving = s[i];
@@ -117,10 +120,14 @@ static void take_edge(edge_pass *p, int32_t low, const side *s, int32_t count)
     int32_t high = s->high;
     t->edge_count++;
     bool flawed = true;
-    if (count == 1) note(&t->open_edges, low, high);
-    else if (count > 2) note(&t->crowded_edges, low, high);
-    else if (runs_upwards(p, &s[0]) == runs_upwards(p, &s[1])) note(&t->misdirected_edges, low, high);
-    else flawed = false;
+    if (count == 1)
+        note(&t->open_edges, low, high);
+    else if (count > 2)
+        note(&t->crowded_edges, low, high);
+    else if (runs_upwards(p, &s[0]) == runs_upwards(p, &s[1]))
+        note(&t->misdirected_edges, low, high);
+    else
+        flawed = false;
     for (int32_t i = 0; i < count; i++) {
         p->flawed[s[i].half / 3] |= flawed;
         if (i == 0) continue;
@@ -139,7 +146,8 @@ static void take_edges_of(edge_pass *p, int32_t vertex)
     int32_t count = p->start[vertex + 1] - p->start[vertex];
     sort_sides(s, count);
     for (int32_t i = 0, end; i < count; i = end) {
-        for (end = i + 1; end < count && s[end].high == s[i].high; end++) {}
+        for (end = i + 1; end < count && s[end].high == s[i].high; end++) {
+        }
         take_edge(p, vertex, s + i, end - i);
     }
 }
@@ -167,9 +175,12 @@ static void number_shells(edge_pass *p)
     topology *t = p->t;
     for (int32_t i = 0; i < t->triangle_count; i++) {
         int32_t root = root_of(p->above, i);
-        if (names_a_vertex_twice(p->triangle[i])) t->shell[i] = -1;
-        else if (root == i) t->shell[i] = t->shell_count++;
-        else t->shell[i] = t->shell[root];
+        if (names_a_vertex_twice(p->triangle[i]))
+            t->shell[i] = -1;
+        else if (root == i)
+            t->shell[i] = t->shell_count++;
+        else
+            t->shell[i] = t->shell[root];
     }
 }
 

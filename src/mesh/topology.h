@@ -1,4 +1,4 @@
-// What the triangles of a mesh share: edges, fans around vertices, shells. Whole numbers only, no coordinates.
+// What the triangles of a mesh share: edges, fans around vertices, shells. No coordinates.
 #ifndef MESH_TOPOLOGY_H
 #define MESH_TOPOLOGY_H
 
@@ -12,16 +12,16 @@ typedef struct finding {
 
 /// {0} is valid and empty. A triangle that names a vertex twice is no surface and is left out of everything.
 typedef struct topology {
-    int32_t triangle_count;          // as given
+    int32_t triangle_count; // as given
     int32_t used_triangle_count, used_vertex_count, edge_count;
-    finding open_edges;              // in one triangle; a, b are vertices
-    finding crowded_edges;           // in three triangles or more; a, b are vertices
-    finding misdirected_edges;       // in two triangles that run it the same way; a, b are vertices
-    finding crowded_vertices;        // more than one fan of triangles meets there; a is the vertex
-    finding repeated_triangles;      // the same three vertices as another, either way round; a, b are triangles
-    int32_t shell_count;             // parts connected through edges, in the order of their first triangles
-    int32_t *shell;                  // [triangle_count], -1 for triangles left out
-    bool *flawed;                    // [shell_count], has an open, crowded or misdirected edge
+    finding open_edges;         // in one triangle; a, b are vertices
+    finding crowded_edges;      // in three triangles or more; a, b are vertices
+    finding misdirected_edges;  // in two triangles that run it the same way; a, b are vertices
+    finding crowded_vertices;   // more than one fan of triangles meets there; a is the vertex
+    finding repeated_triangles; // the same three vertices as another, either way round; a, b are triangles
+    int32_t shell_count;        // parts connected through edges, in the order of their first triangles
+    int32_t *shell;             // [triangle_count], -1 for triangles left out
+    bool *flawed;               // [shell_count], has an open, crowded or misdirected edge
 } topology;
 
 /// Find all of it.

@@ -1,17 +1,18 @@
 // DXF R12: the oldest dialect, which every program reads. A closed POLYLINE a contour.
 //
-// Source:  Autodesk, DXF reference for Release 12. The drawing's unit ($INSUNITS 4, mm) is younger than R12 and
-//          ignored where it is not known; the numbers are mm either way.
+// Source:  Autodesk, DXF reference for Release 12. The drawing's unit ($INSUNITS 4, mm) is younger than R12
+//          and ignored where it is not known; the numbers are mm either way.
 #include <jali/write.h>
 
 #include "base/number.h"
 #include "base/bytes.h"
 
-static const char head[] = "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n"
-                           "0\nENDSEC\n0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n2\n"
-                           "0\nLAYER\n2\nOUTLINE\n70\n0\n62\n7\n6\nCONTINUOUS\n"
-                           "0\nLAYER\n2\nHOLES\n70\n0\n62\n1\n6\nCONTINUOUS\n"
-                           "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
+static const char head[] =
+    "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n9\n$INSUNITS\n70\n4\n9\n$MEASUREMENT\n70\n1\n"
+    "0\nENDSEC\n0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n2\n"
+    "0\nLAYER\n2\nOUTLINE\n70\n0\n62\n7\n6\nCONTINUOUS\n"
+    "0\nLAYER\n2\nHOLES\n70\n0\n62\n1\n6\nCONTINUOUS\n"
+    "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
 static const char tail[] = "0\nENDSEC\n0\nEOF\n";
 
 // Twice the signed area; positive around solid. Products of 32-bit steps fit, their sum is kept in 128.
@@ -34,7 +35,8 @@ static jali_status put_contour(jali_context *ctx, const jali_contours *c, int32_
         char x[DECIMAL_BYTES], y[DECIMAL_BYTES];
         int x_length = write_decimal(x, c->point[i][0] * c->unit_mm);
         int y_length = write_decimal(y, c->point[i][1] * c->unit_mm);
-        TRY(bytes_print(ctx, bytes, "0\nVERTEX\n8\n%s\n10\n%.*s\n20\n%.*s\n30\n0\n", layer, x_length, x, y_length, y));
+        TRY(bytes_print(ctx, bytes, "0\nVERTEX\n8\n%s\n10\n%.*s\n20\n%.*s\n30\n0\n", layer, x_length, x,
+                        y_length, y));
     }
     TRY(bytes_print(ctx, bytes, "0\nSEQEND\n8\n%s\n", layer));
 done:

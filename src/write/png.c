@@ -1,7 +1,7 @@
 // PNG: one bit a pixel straight from a bitmap, or 8-bit colours.
 //
-// libpng allocates from the context and leaves errors by longjmp; they end as a status. No time, no text: the same
-// pixels give the same bytes.
+// libpng allocates from the context and leaves errors by longjmp; they end as a status. No time, no text: the
+// same pixels give the same bytes.
 //
 // Checked: tests/test_read.c and tests/test_write.c: what is written is read back, at many widths.
 #include <jali/png.h>
@@ -25,7 +25,8 @@ typedef struct png_job {
 static void on_error(png_structp png, png_const_charp message)
 {
     png_job *job = png_get_error_ptr(png);
-    if (job->status == JALI_OK) job->status = fail(job->ctx, JALI_BAD_VALUE, "cannot write the PNG: %s", message);
+    if (job->status == JALI_OK)
+        job->status = fail(job->ctx, JALI_BAD_VALUE, "cannot write the PNG: %s", message);
     png_longjmp(png, 1);
 }
 
@@ -95,21 +96,28 @@ static void write_all(png_job *job, png_structp png, png_infop info)
 static jali_status write_png(png_job *job)
 {
     if (job->width_px < 1 || job->height_px < 1 || job->width_px > 1 << 20 || job->height_px > 1 << 20)
-        return fail(job->ctx, JALI_BAD_VALUE, "a PNG of %d x %d px cannot be written; a side is 1 .. 1048576 px",
-                    job->width_px, job->height_px);
-    png_structp png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, job, on_allocate,
-                                                on_release);
+        return fail(job->ctx, JALI_BAD_VALUE,
+                    "a PNG of %d x %d px cannot be written; a side is 1 .. 1048576 px", job->width_px,
+                    job->height_px);
+    png_structp png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, job,
+                                                on_allocate, on_release);
     png_infop info = png ? png_create_info_struct(png) : NULL;
-    if (info) write_all(job, png, info);
-    else if (job->status == JALI_OK) job->status = fail(job->ctx, JALI_NO_MEMORY, "no memory for the PNG");
+    if (info)
+        write_all(job, png, info);
+    else if (job->status == JALI_OK)
+        job->status = fail(job->ctx, JALI_NO_MEMORY, "no memory for the PNG");
     png_destroy_write_struct(&png, &info);
     return job->status;
 }
 
 jali_status jali_bitmap_png(jali_context *ctx, const jali_bitmap *bitmap, double pixel_mm, jali_bytes *bytes)
 {
-    png_job job = {.ctx = ctx, .bytes = bytes, .width_px = bitmap->width_px, .height_px = bitmap->height_px,
-                   .bitmap = bitmap, .pixel_mm = pixel_mm};
+    png_job job = {.ctx = ctx,
+                   .bytes = bytes,
+                   .width_px = bitmap->width_px,
+                   .height_px = bitmap->height_px,
+                   .bitmap = bitmap,
+                   .pixel_mm = pixel_mm};
     return write_png(&job);
 }
 

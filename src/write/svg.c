@@ -70,8 +70,9 @@ jali_status jali_write_svg(jali_context *ctx, const jali_contours *c, double wid
         high[1] = llround(height_mm / c->unit_mm);
     }
     long long width = high[0] - low[0], height = high[1] - low[1];
-    TRY(bytes_print(ctx, bytes, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                                "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" "));
+    TRY(bytes_print(ctx, bytes,
+                    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                    "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" "));
     TRY(put_decimal(ctx, "width=\"", (double)width * c->unit_mm, "mm\" ", bytes));
     TRY(put_decimal(ctx, "height=\"", (double)height * c->unit_mm, "mm\" ", bytes));
     TRY(bytes_print(ctx, bytes, "viewBox=\"%lld 0 %lld %lld\">\n", (long long)low[0], width, height));

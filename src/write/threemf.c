@@ -15,10 +15,10 @@
 #include <stdio.h>
 
 enum {
-    BLOCK = 4096,          // vertices or triangles
-    BATCH = 32,            // blocks at a time
-    LINE_BYTES = 128,      // longest line: <vertex> with three numbers, 3 * 32 + 24
-    LEVEL = 1,             // deflate: 6 takes twice as long for a tenth less
+    BLOCK = 4096,     // vertices or triangles
+    BATCH = 32,       // blocks at a time
+    LINE_BYTES = 128, // longest line: <vertex> with three numbers, 3 * 32 + 24
+    LEVEL = 1,        // deflate: 6 takes twice as long for a tenth less
     THUMBNAIL_PX = 256
 };
 
@@ -29,15 +29,15 @@ static const char content_types[] =
     "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>"
     "<Default Extension=\"png\" ContentType=\"image/png\"/></Types>\n";
 
-#define MODEL_RELATION \
-    "<Relationship Target=\"/3D/3dmodel.model\" Id=\"model\" " \
+#define MODEL_RELATION                                                                                       \
+    "<Relationship Target=\"/3D/3dmodel.model\" Id=\"model\" "                                               \
     "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
-#define THUMBNAIL_RELATION \
-    "<Relationship Target=\"/Metadata/thumbnail.png\" Id=\"thumbnail\" " \
+#define THUMBNAIL_RELATION                                                                                   \
+    "<Relationship Target=\"/Metadata/thumbnail.png\" Id=\"thumbnail\" "                                     \
     "Type=\"http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail\"/>"
-#define RELATIONS(...) \
-    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" \
-    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">" __VA_ARGS__ \
+#define RELATIONS(...)                                                                                       \
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"                                                           \
+    "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">" __VA_ARGS__     \
     "</Relationships>\n"
 
 typedef struct line_job {
@@ -127,8 +127,10 @@ static jali_status write_model(jali_context *ctx, const jali_mesh *mesh, const j
     // Lines of an ordinary plate are about so long; a wrong guess costs a copy.
     TRY(bytes_reserve(ctx, xml, 4096 + (size_t)mesh->vertex_count * 60 + (size_t)mesh->triangle_count * 50));
     TRY(ALLOCATE(ctx, job.text, (size_t)BATCH * BLOCK * LINE_BYTES));
-    TRY(bytes_print(ctx, xml, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" "
-                              "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"));
+    TRY(bytes_print(
+        ctx, xml,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" "
+        "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"));
     TRY(write_metadata(ctx, "Title", opt->title, xml));
     TRY(write_metadata(ctx, "Application", application, xml));
     TRY(write_metadata(ctx, "Description", opt->parameters, xml));
@@ -136,8 +138,9 @@ static jali_status write_model(jali_context *ctx, const jali_mesh *mesh, const j
     TRY(write_lines(ctx, &job, false, xml));
     TRY(bytes_print(ctx, xml, "</vertices><triangles>\n"));
     TRY(write_lines(ctx, &job, true, xml));
-    TRY(bytes_print(ctx, xml, "</triangles></mesh></object></resources>\n<build><item objectid=\"1\"/></build>\n"
-                              "</model>\n"));
+    TRY(bytes_print(ctx, xml,
+                    "</triangles></mesh></object></resources>\n<build><item objectid=\"1\"/></build>\n"
+                    "</model>\n"));
 done:
     release(ctx, job.text);
     return status;
@@ -158,7 +161,8 @@ done:
 jali_status jali_write_3mf(jali_context *ctx, const jali_mesh *mesh, const jali_write_options *given,
                            jali_bytes *bytes)
 {
-    static const char bare[] = RELATIONS(MODEL_RELATION), pictured[] = RELATIONS(MODEL_RELATION THUMBNAIL_RELATION);
+    static const char bare[] = RELATIONS(MODEL_RELATION),
+                      pictured[] = RELATIONS(MODEL_RELATION THUMBNAIL_RELATION);
     jali_status status;
     jali_write_options opt = given ? *given : jali_write_defaults();
     jali_bytes xml = {0}, png = {0};

@@ -1,9 +1,10 @@
 // A small picture of a mesh: from above and a little from the front, lit from the upper left.
 //
-// Triangles are drawn into a depth buffer of four by four samples a pixel and box-filtered. A plate shows its top
-// light, its walls darker, the background through its holes with the shadow of the rim.
+// Triangles are drawn into a depth buffer of four by four samples a pixel and box-filtered. A plate shows its
+// top light, its walls darker, the background through its holes with the shadow of the rim.
 //
-// Limits:  samples are drawn from the one side that faces the eye; a mesh with a flipped face shows a hole there.
+// Limits:  samples are drawn from the one side that faces the eye; a mesh with a flipped face shows a hole
+//          there.
 #include <jali/write.h>
 
 #include "mesh/mesh.h"
@@ -82,9 +83,12 @@ static uint8_t light_on(const double a[3], const double b[3], const double c[3])
 // Where on this row `at` + x * `slope` is not negative, cut out of low .. high.
 static void cut(double at, double slope, int32_t *low, int32_t *high)
 {
-    if (slope > 0) *low = MAX(*low, (int32_t)MIN(ceil(-at / slope), (double)*high + 1));
-    else if (slope < 0) *high = MIN(*high, (int32_t)MAX(floor(-at / slope), (double)*low - 1));
-    else if (at < 0) *high = *low - 1;
+    if (slope > 0)
+        *low = MAX(*low, (int32_t)MIN(ceil(-at / slope), (double)*high + 1));
+    else if (slope < 0)
+        *high = MIN(*high, (int32_t)MAX(floor(-at / slope), (double)*low - 1));
+    else if (at < 0)
+        *high = *low - 1;
 }
 
 // Fill the samples whose centres lie within the triangle and that are nearest so far.
@@ -124,7 +128,8 @@ static void filter(const sample *buffer, int32_t size_px, uint8_t *rgb)
                                           (size_t)(x * SAMPLES + i % SAMPLES)];
                 for (int k = 0; k < 3; k++) sum[k] += s->depth > -INFINITY ? s->light * wood[k] : behind[k];
             }
-            for (int k = 0; k < 3; k++) rgb[3 * (y * size_px + x) + k] = (uint8_t)(sum[k] / (SAMPLES * SAMPLES) + 0.5);
+            for (int k = 0; k < 3; k++)
+                rgb[3 * (y * size_px + x) + k] = (uint8_t)(sum[k] / (SAMPLES * SAMPLES) + 0.5);
         }
 }
 

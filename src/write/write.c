@@ -59,8 +59,7 @@ jali_status jali_write_bytes(jali_context *ctx, jali_format format, const jali_p
         TRY(need(ctx, p->bitmap, "PNG", "a picture"));
         TRY(jali_bitmap_png(ctx, p->bitmap, p->pixel_mm, bytes));
         break;
-    default:
-        TRY(fail(ctx, JALI_BAD_VALUE, "no output format given; 3mf, stl, svg, dxf and png are known"));
+    default: TRY(fail(ctx, JALI_BAD_VALUE, "no output format given; 3mf, stl, svg, dxf and png are known"));
     }
 done:
     return status;
@@ -75,7 +74,8 @@ jali_status jali_write(jali_context *ctx, const char *path, const jali_product *
     jali_bytes bytes = {0};
     output_file file = {0};
     if (format == JALI_FORMAT_BY_SUFFIX)
-        TRY(fail(ctx, JALI_BAD_VALUE, "%s names no output format; .3mf, .stl, .svg, .dxf and .png are known", path));
+        TRY(fail(ctx, JALI_BAD_VALUE, "%s names no output format; .3mf, .stl, .svg, .dxf and .png are known",
+                 path));
     TRY(output_open(ctx, path, &file)); // before the work: a bad path is known at once
     TRY(jali_write_bytes(ctx, format, product, &opt, &bytes));
     TRY(output_write(ctx, &file, bytes.data, bytes.size));

@@ -23,10 +23,16 @@ jali_status xml_text(jali_context *ctx, const char *text, jali_bytes *bytes)
     jali_status status = JALI_OK;
     while (*text) {
         size_t length = sound_sequence((const unsigned char *)text);
-        const char *instead = length == 0 ? "?" : *text == '&' ? "&amp;" : *text == '<' ? "&lt;" : *text == '>' ? "&gt;"
-                            : *text == '"' ? "&quot;" : NULL;
-        if (instead) TRY(bytes_append(ctx, bytes, instead, strlen(instead)));
-        else TRY(bytes_append(ctx, bytes, text, length));
+        const char *instead = length == 0    ? "?"
+                              : *text == '&' ? "&amp;"
+                              : *text == '<' ? "&lt;"
+                              : *text == '>' ? "&gt;"
+                              : *text == '"' ? "&quot;"
+                                             : NULL;
+        if (instead)
+            TRY(bytes_append(ctx, bytes, instead, strlen(instead)));
+        else
+            TRY(bytes_append(ctx, bytes, text, length));
         text += MAX(length, (size_t)1);
     }
 done:

@@ -29,10 +29,10 @@ static void put_common(uint8_t **to, const zip_writer *zip, int32_t index)
     put(to, 0, 2);
 }
 
-// Deflate into the room behind the bytes in use. A model packs to a fifth; when a third does not do, all is tried,
-// and what will not shrink is left to be stored.
-static jali_status deflate_behind(jali_context *ctx, const void *data, size_t size, int level, jali_bytes *bytes,
-                                  size_t *packed)
+// Deflate into the room behind the bytes in use. A model packs to a fifth; when a third does not do, all is
+// tried, and what will not shrink is left to be stored.
+static jali_status deflate_behind(jali_context *ctx, const void *data, size_t size, int level,
+                                  jali_bytes *bytes, size_t *packed)
 {
     *packed = 0;
     struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(level);
@@ -49,8 +49,8 @@ done:
     return status;
 }
 
-jali_status zip_add(jali_context *ctx, zip_writer *zip, const char *name, const void *data, size_t size, int level,
-                    jali_bytes *bytes)
+jali_status zip_add(jali_context *ctx, zip_writer *zip, const char *name, const void *data, size_t size,
+                    int level, jali_bytes *bytes)
 {
     jali_status status;
     assert(zip->entry_count < ZIP_ENTRIES);
@@ -62,8 +62,10 @@ jali_status zip_add(jali_context *ctx, zip_writer *zip, const char *name, const 
     bytes->size += head;
     if (level > 0 && size > 0) TRY(deflate_behind(ctx, data, size, level, bytes, &packed));
     bool deflated = packed > 0;
-    if (deflated) bytes->size += packed;
-    else TRY(bytes_append(ctx, bytes, data, size));
+    if (deflated)
+        bytes->size += packed;
+    else
+        TRY(bytes_append(ctx, bytes, data, size));
     if (size > UINT32_MAX || bytes->size - zip->start > UINT32_MAX - 65536)
         TRY(fail(ctx, JALI_LIMIT, "an archive of more than 4 GB cannot be written"));
     zip->entry[index].name = name;
