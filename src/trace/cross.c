@@ -9,7 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ARC_STEPS = 12, LEG_POINTS = 2 * ARC_STEPS + 4 };
+enum { ARC_STEPS = 12, LEG_POINTS = 2 * ARC_STEPS + 4, EASED_CRACKS = 3, EASING_ROUNDS = 4 };
+
+// A curve that passes a pixel centre on the wrong side by less than this leaves no visible bump.
+static const double HELD_PX = 0.05;
 
 // The curve near one vertex: from the middle of the edge before, past the vertex, to the middle of the next.
 typedef struct bend {
@@ -89,18 +92,55 @@ static passage pass_crack(const double (*point)[2], int count, const crack *c, i
     return (passage){c->direction == 0 || c->direction == 3 ? offset : -offset, sqrt(run * run + rise * rise) / run};
 }
 
+// Put the crossing of a crack `offset` units to the left of its midpoint, or as near to that as its pixel
+// centres allow.
+static void place_crossing(crossing *fine, double offset, int32_t half)
+{
+    int across = !(fine->direction & 1), left = fine->direction == 0 || fine->direction == 3 ? 1 : -1;
+    int32_t most = half - 1, at = (int32_t)lround(MIN(MAX(offset, -most), most)), middle = fine->middle;
+    fine->at[across] = middle + left * at;
+    fine->left = middle + left * MIN(at + fine->room, half);
+    fine->right = middle + left * MAX(at - fine->room, -half);
+}
+
 static crossing cross_one(const crack *c, passage p, int32_t unit, int32_t slack)
 {
-    int32_t half = unit / 2, most = half - 1;
-    int32_t offset = (int32_t)lround(MIN(MAX(p.offset * unit, -most), most));
-    int32_t room = (int32_t)MIN(slack * p.stretch, unit) + 1;
-    int across = !(c->direction & 1), left = c->direction == 0 || c->direction == 3 ? 1 : -1;
-    crossing fine = {{(int32_t)lround(c->x * unit), (int32_t)lround(c->y * unit)}, 0, 0, c->direction};
-    int32_t middle = fine.at[across];
-    fine.left = middle + left * MIN(offset + room, half);
-    fine.right = middle + left * MAX(offset - room, -half);
-    fine.at[across] = middle + left * offset;
+    crossing fine = {.at = {(int32_t)lround(c->x * unit), (int32_t)lround(c->y * unit)}, .direction = c->direction};
+    fine.room = (int32_t)MIN(slack * p.stretch, unit) + 1;
+    fine.middle = fine.at[!(c->direction & 1)];
+    fine.held = fabs(p.offset) > 0.5 + HELD_PX * p.stretch;
+    place_crossing(&fine, p.offset * unit, unit / 2);
     return fine;
+}
+
+// Move a crossing onto the straight line between its neighbours, as far as its pixel centres allow.
+static void straighten(crossing *c, const crossing *before, const crossing *after, int32_t unit)
+{
+    if (c->direction == CORNER) return;
+    int along = c->direction & 1, across = !along;
+    double run = after->at[along] - before->at[along];
+    if (run * (c->direction < 2 ? 1 : -1) <= 0) return;
+    double share = (c->at[along] - before->at[along]) / run;
+    double target = before->at[across] + share * (after->at[across] - before->at[across]);
+    place_crossing(c, (target - c->middle) * (c->direction == 0 || c->direction == 3 ? 1 : -1), unit / 2);
+}
+
+// Where the curve was held back it would leave a bump: pull the crossings around straight.
+static void ease_bumps(crossing *fine, int32_t count, int32_t unit)
+{
+    if (count < 4 * EASED_CRACKS) return;
+    for (int32_t k = 0; k < count; k++) {
+        if (!fine[k].held) continue;
+        int32_t first = k;
+        for (int32_t next = k + 1; next <= k + EASED_CRACKS && next < count; next++)
+            if (fine[next].held) k = next;
+        for (int round = 0; round < EASING_ROUNDS; round++)
+            for (int32_t j = first - EASED_CRACKS; j <= k + EASED_CRACKS; j++) {
+                crossing *here = &fine[j < 0 ? j + count : j < count ? j : j - count];
+                const crossing *before = here == fine ? fine + count - 1 : here - 1;
+                straighten(here, before, here + 1 == fine + count ? fine : here + 1, unit);
+            }
+    }
 }
 
 // A corner stays in its pixel-sized cell, which no other path enters unless two solids meet there.
@@ -110,8 +150,8 @@ static bool corner_point(const outline *o, int32_t v, int32_t unit, crossing *fi
     if (here->apart) return false;
     double dx = o->place[v][0] - here->x, dy = o->place[v][1] - here->y;
     double size = sqrt(dx * dx + dy * dy), most = 0.5 - 1.5 / unit, shrink = size > most ? most / size : 1;
-    *fine = (crossing){{here->x * unit + (int32_t)lround(dx * shrink * unit),
-                        here->y * unit + (int32_t)lround(dy * shrink * unit)}, 0, 0, CORNER};
+    *fine = (crossing){.at = {here->x * unit + (int32_t)lround(dx * shrink * unit),
+                              here->y * unit + (int32_t)lround(dy * shrink * unit)}, .direction = CORNER};
     return true;
 }
 
@@ -137,5 +177,6 @@ int32_t cross_cracks(const outline *o, int32_t unit, int32_t slack, crossing *fi
         }
         from = to;
     }
+    ease_bumps(fine, count, unit);
     return count;
 }

@@ -57,7 +57,9 @@ void fit_vertices(outline *o);
 typedef struct crossing {
     int32_t at[2];           // lattice
     int32_t left, right;     // where else the contour may cross: strictly between these, the solid's side first
+    int32_t middle, room;    // midpoint of the crack along the same line; how far left and right may lie from `at`
     int8_t direction;        // of the crack: 0 = +x, 1 = +y, 2 = -x, 3 = -y; CORNER = no crack
+    bool held;               // the smooth curve would pass on the wrong side of a pixel centre
 } crossing;
 
 enum { CORNER = 4 };

@@ -84,7 +84,7 @@ static void choose_vertices(outline *o, int32_t base)
             before = here;
             double off = residual(&s), cost = o->cost[i] + off + EDGE_COST;
             if (cost < o->cost[k]) o->cost[k] = cost, o->from[k] = i;
-            if (off > PIXEL_NOISE * s.n + 4 * EDGE_COST || o->square[slot]) break;
+            if (off > PIXEL_NOISE * s.n + 2 * EDGE_COST || o->square[slot]) break;
         }
     }
     o->vertex_count = 0;
@@ -173,7 +173,7 @@ static void keep_centres(const outline *o, int32_t i, int32_t end, double middle
     const turn *from = turn_at(o, i), *to = turn_at(o, end);
     double most = 2 / hypot(to->x - from->x, to->y - from->y), low = -most, high = most, best = 0, best_tilt = 0;
     double best_height = 0;
-    for (int step = 0; step < 24; step++) {
+    for (int step = 0; step < 14; step++) {
         double tilt = 0.5 * (low + high);
         r = room_beside(o, i, end, middle, along, tilt);
         if (r.left - r.right > best) best = r.left - r.right, best_tilt = tilt, best_height = 0.5 * (r.left + r.right);
