@@ -8,7 +8,9 @@
 
 #include <math.h>
 
-typedef struct half { int32_t from, to, triangle; } half;
+typedef struct half {
+    int32_t from, to, triangle;
+} half;
 
 static int by_ends(const void *a, const void *b)
 {
@@ -28,7 +30,8 @@ static int64_t check_closed(const jali_mesh *mesh)
 {
     int32_t halves = 3 * mesh->triangle_count;
     half *list = malloc((size_t)halves * sizeof *list);
-    int32_t *degree = calloc((size_t)mesh->vertex_count, sizeof *degree), *any = malloc((size_t)mesh->vertex_count * 4);
+    int32_t *degree = calloc((size_t)mesh->vertex_count, sizeof *degree),
+            *any = malloc((size_t)mesh->vertex_count * 4);
     for (int32_t h = 0; h < halves; h++) {
         const int32_t *t = mesh->triangle[h / 3];
         list[h] = (half){t[h % 3], t[(h + 1) % 3], h / 3};
@@ -66,7 +69,8 @@ static double volume6(const jali_mesh *mesh, double unit_mm)
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 3; k++) p[i][k] = (int64_t)(mesh->vertex[mesh->triangle[t][i]][k] / unit_mm);
         for (int k = 0; k < 3; k++)
-            sum += (__int128)p[0][k] * (p[1][(k + 1) % 3] * p[2][(k + 2) % 3] - p[1][(k + 2) % 3] * p[2][(k + 1) % 3]);
+            sum += (__int128)p[0][k] *
+                   (p[1][(k + 1) % 3] * p[2][(k + 2) % 3] - p[1][(k + 2) % 3] * p[2][(k + 1) % 3]);
     }
     return (double)sum;
 }
@@ -82,8 +86,11 @@ static double area2(const jali_contours *c)
 
 static jali_chart chart_of(const jali_bitmap *bitmap, bool outside_solid)
 {
-    return (jali_chart){.width_px = bitmap->width_px, .height_px = bitmap->height_px, .outside_solid = outside_solid,
-                        .pixel_units = 64, .unit_mm = 1.0 / 256};
+    return (jali_chart){.width_px = bitmap->width_px,
+                        .height_px = bitmap->height_px,
+                        .outside_solid = outside_solid,
+                        .pixel_units = 64,
+                        .unit_mm = 1.0 / 256};
 }
 
 static void carve(const jali_bitmap *bitmap, const jali_chart *chart, const jali_carve_options *opt)
@@ -95,7 +102,8 @@ static void carve(const jali_bitmap *bitmap, const jali_chart *chart, const jali
     CHECK_OK(jali_carve(ctx, &contours, chart, opt, &mesh));
     int64_t euler = check_closed(&mesh), pieces_less_holes = 0;
     for (int32_t c = 0; c < plate.contour_count; c++) {
-        jali_contours one = {1, 0, (int32_t[]){plate.first[c], plate.first[c + 1]}, plate.point, plate.unit_mm};
+        jali_contours one = {1, 0, (int32_t[]){plate.first[c], plate.first[c + 1]}, plate.point,
+                             plate.unit_mm};
         pieces_less_holes += area2(&one) > 0 ? 1 : -1;
     }
     CHECK_INT(euler, 2 * pieces_less_holes);
@@ -143,7 +151,8 @@ TEST(the_hole_keeps_its_web)
         double least = INFINITY;
         for (int32_t i = plate.first[1]; i < plate.first[2]; i++) // to every edge of the other two
             for (int32_t c = 0; c < 3; c += 2)
-                for (int32_t j = plate.first[c], end = plate.first[c + 1], before = end - 1; j < end; before = j++) {
+                for (int32_t j = plate.first[c], end = plate.first[c + 1], before = end - 1; j < end;
+                     before = j++) {
                     const int32_t *a = plate.point[before], *b = plate.point[j], *p = plate.point[i];
                     double dx = b[0] - a[0], dy = b[1] - a[1];
                     double along = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / (dx * dx + dy * dy);
@@ -170,7 +179,8 @@ TEST(bad_input_is_a_sentence)
     jali_carve_options opt = jali_carve_defaults();
     CHECK_STATUS(jali_carve(ctx, &none, &open, &opt, &mesh), JALI_BAD_INPUT);
     CHECK(strstr(jali_message(ctx), "nothing solid") != NULL);
-    CHECK_STATUS(jali_carve(ctx, &void_border, &chart, &opt, &mesh), JALI_BAD_INPUT); // void along the whole edge
+    CHECK_STATUS(jali_carve(ctx, &void_border, &chart, &opt, &mesh),
+                 JALI_BAD_INPUT); // void along the whole edge
     CHECK(strstr(jali_message(ctx), "touch or cross") != NULL && mesh.vertex == NULL);
     opt.frame_mm = 1;
     opt.hole_diameter_mm = 8;
@@ -200,8 +210,8 @@ TEST(bad_input_is_a_sentence)
     jali_bitmap_free(ctx, &bitmap);
 }
 
-// Random points, random intervals in regions cut by random lines: every mesh that is not refused is closed, and
-// its volume is the sum over the cells.
+// Random points, random intervals in regions cut by random lines: every mesh that is not refused is closed,
+// and its volume is the sum over the cells.
 static int check_cells(uint64_t seed, int32_t points, int32_t kinds, bool anchored)
 {
     int32_t point[60][2];
@@ -217,10 +227,12 @@ static int check_cells(uint64_t seed, int32_t points, int32_t kinds, bool anchor
         if (is_ghost(&plane, t)) continue;
         const int32_t *a = plane.point[plane.corner[4 * t]], *b = plane.point[plane.corner[4 * t + 1]];
         const int32_t *c = plane.point[plane.corner[4 * t + 2]];
-        int32_t pick = anchored ? (a[0] + b[0] + c[0]) / 3 > split : (int32_t)(next_random(&seed) >> 40) % kinds;
+        int32_t pick =
+            anchored ? (a[0] + b[0] + c[0]) / 3 > split : (int32_t)(next_random(&seed) >> 40) % kinds;
         solid[t].bottom = anchored || pick % 2 == 0 ? 0 : 3;
         solid[t].top = anchored ? (pick ? 10 : 4) : (int32_t[]){10, 10, 4, 7, 0}[pick % 5];
-        if (solid[t].top > solid[t].bottom) wanted += 3.0 * (solid[t].top - solid[t].bottom) * (double)orientation(a, b, c);
+        if (solid[t].top > solid[t].bottom)
+            wanted += 3.0 * (solid[t].top - solid[t].bottom) * (double)orientation(a, b, c);
     }
     jali_mesh mesh;
     jali_status status = build_prisms(ctx, &plane, solid, 1, &mesh);
@@ -277,7 +289,8 @@ TEST(a_low_bridge_between_two_pillars)
     CHECK_INT(check_closed(&mesh), 2);
     CHECK(volume6(&mesh, 1) == 6.0 * 100 * 24);
     jali_mesh_free(ctx, &mesh);
-    CHECK_OK(strip((interval[]){{0, 10}, {4, 6}, {0, 10}, {5, 7}, {0, 10}}, 5, &mesh)); // bars between pillars
+    CHECK_OK(
+        strip((interval[]){{0, 10}, {4, 6}, {0, 10}, {5, 7}, {0, 10}}, 5, &mesh)); // bars between pillars
     CHECK_INT(check_closed(&mesh), 2);
     jali_mesh_free(ctx, &mesh);
     CHECK_OK(strip((interval[]){{0, 10}, {0, 0}, {3, 8}}, 3, &mesh)); // two pieces

@@ -71,8 +71,11 @@ TEST(grids_circles_lines_and_twins)
     check_points(point, n);
     for (n = 0; n < 1000; n++) point[n][0] = n % 10, point[n][1] = n / 10 % 10; // each ten times
     check_points(point, n);
-    int32_t far[5][2] = {{-COORDINATE_LIMIT, -COORDINATE_LIMIT}, {COORDINATE_LIMIT, -COORDINATE_LIMIT},
-                         {COORDINATE_LIMIT, COORDINATE_LIMIT}, {-COORDINATE_LIMIT, COORDINATE_LIMIT}, {1, 0}};
+    int32_t far[5][2] = {{-COORDINATE_LIMIT, -COORDINATE_LIMIT},
+                         {COORDINATE_LIMIT, -COORDINATE_LIMIT},
+                         {COORDINATE_LIMIT, COORDINATE_LIMIT},
+                         {-COORDINATE_LIMIT, COORDINATE_LIMIT},
+                         {1, 0}};
     check_points(far, 5);
     check_points(far, 0);
     check_points(far, 2);
@@ -117,8 +120,9 @@ TEST(constrained_edges_are_kept_and_the_rest_is_delaunay)
         CHECK_OK(label_tones(ctx, &plane, EDGE_CONTOUR, tone));
         int64_t inside = 0, area = 0;
         for (int32_t t = 0; t < plane.triangle_count; t++)
-            if (tone[t]) inside += orientation(plane.point[plane.corner[4 * t]], plane.point[plane.corner[4 * t + 1]],
-                                               plane.point[plane.corner[4 * t + 2]]);
+            if (tone[t])
+                inside += orientation(plane.point[plane.corner[4 * t]], plane.point[plane.corner[4 * t + 1]],
+                                      plane.point[plane.corner[4 * t + 2]]);
         for (int32_t i = 0; i < corners; i++) {
             const int32_t *p = point[edge[i][0]], *q = point[edge[i][1]];
             area += (int64_t)p[0] * q[1] - (int64_t)p[1] * q[0];

@@ -11,8 +11,11 @@ enum { UNITS = 64 };
 
 static jali_chart chart_of(const jali_bitmap *bitmap, bool outside_solid)
 {
-    return (jali_chart){.width_px = bitmap->width_px, .height_px = bitmap->height_px, .outside_solid = outside_solid,
-                        .pixel_units = UNITS, .unit_mm = 1.0 / 1024};
+    return (jali_chart){.width_px = bitmap->width_px,
+                        .height_px = bitmap->height_px,
+                        .outside_solid = outside_solid,
+                        .pixel_units = UNITS,
+                        .unit_mm = 1.0 / 1024};
 }
 
 static bool touch(const int32_t a[2], const int32_t b[2], const int32_t c[2], const int32_t d[2])
@@ -22,10 +25,14 @@ static bool touch(const int32_t a[2], const int32_t b[2], const int32_t c[2], co
     if (abc == 0 && abd == 0)
         return MAX(MIN(a[0], b[0]), MIN(c[0], d[0])) <= MIN(MAX(a[0], b[0]), MAX(c[0], d[0])) &&
                MAX(MIN(a[1], b[1]), MIN(c[1], d[1])) <= MIN(MAX(a[1], b[1]), MAX(c[1], d[1]));
-    return ((abc <= 0 && abd >= 0) || (abc >= 0 && abd <= 0)) && ((cda <= 0 && cdb >= 0) || (cda >= 0 && cdb <= 0));
+    return ((abc <= 0 && abd >= 0) || (abc >= 0 && abd <= 0)) &&
+           ((cda <= 0 && cdb >= 0) || (cda >= 0 && cdb <= 0));
 }
 
-typedef struct edge { int32_t contour, index, low_y, high_y; const int32_t *a, *b; } edge;
+typedef struct edge {
+    int32_t contour, index, low_y, high_y;
+    const int32_t *a, *b;
+} edge;
 
 static int by_low_y(const void *a, const void *b)
 {
@@ -109,7 +116,8 @@ TEST(random_bitmaps)
         }
 }
 
-static void fill(jali_bitmap *bitmap, bool (*inside)(double x, double y, const double *shape), const double *shape)
+static void fill(jali_bitmap *bitmap, bool (*inside)(double x, double y, const double *shape),
+                 const double *shape)
 {
     for (int32_t y = 0; y < bitmap->height_px; y++)
         for (int32_t x = 0; x < bitmap->width_px; x++)
@@ -179,7 +187,8 @@ TEST(circles_are_round)
         double worst = 0, sharpest = 0, off = 0;
         int32_t n = contours.point_count;
         for (int32_t i = 0; i < n; i++) {
-            const int32_t *a = contours.point[(i + n - 1) % n], *b = contours.point[i], *c = contours.point[(i + 1) % n];
+            const int32_t *a = contours.point[(i + n - 1) % n], *b = contours.point[i],
+                          *c = contours.point[(i + 1) % n];
             double error = hypot((double)b[0] / UNITS - shape[0], (double)b[1] / UNITS - shape[1]) - r;
             double turned = atan2((double)orientation(a, b, c), (double)(b[0] - a[0]) * (c[0] - b[0]) +
                                                                     (double)(b[1] - a[1]) * (c[1] - b[1]));
@@ -187,8 +196,8 @@ TEST(circles_are_round)
             off += error / n;
             sharpest = fmax(sharpest, fabs(turned));
         }
-        print_message("circle r %.1f: %d points, worst %.3f mean %.3f px, sharpest turn %.1f deg\n", r, n, worst, off,
-                      sharpest * 180 / M_PI);
+        print_message("circle r %.1f: %d points, worst %.3f mean %.3f px, sharpest turn %.1f deg\n", r, n,
+                      worst, off, sharpest * 180 / M_PI);
         CHECK(worst < 0.6 && fabs(off) < 0.25);
         CHECK(sharpest < (r < 20 ? 50 : r < 35 ? 22 : 14) * M_PI / 180); // pixel stairs turn by 90
         CHECK(n < 2 * M_PI * r / 2.2);
@@ -266,7 +275,8 @@ TEST(bad_values_are_a_sentence)
     chart.width_px = 3;
     CHECK_STATUS(jali_trace(ctx, &bitmap, &chart, NULL, &contours), JALI_BAD_VALUE);
     chart.width_px = 2;
-    CHECK_STATUS(jali_trace(ctx, &bitmap, &chart, &(jali_trace_options){.deviation_mm = NAN}, &contours), JALI_BAD_VALUE);
+    CHECK_STATUS(jali_trace(ctx, &bitmap, &chart, &(jali_trace_options){.deviation_mm = NAN}, &contours),
+                 JALI_BAD_VALUE);
     jali_bitmap_free(ctx, &bitmap);
 }
 
@@ -290,11 +300,13 @@ TEST(every_allocation_refused_once)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(rectangles_have_four_points_at_their_corners, open_context, close_context),
+        cmocka_unit_test_setup_teardown(rectangles_have_four_points_at_their_corners, open_context,
+                                        close_context),
         cmocka_unit_test_setup_teardown(corner_touching_pixels_stay_apart, open_context, close_context),
         cmocka_unit_test_setup_teardown(circles_are_round, open_context, close_context),
         cmocka_unit_test_setup_teardown(straight_bands_have_few_points, open_context, close_context),
-        cmocka_unit_test_setup_teardown(any_number_of_threads_gives_the_same_bytes, open_context, close_context),
+        cmocka_unit_test_setup_teardown(any_number_of_threads_gives_the_same_bytes, open_context,
+                                        close_context),
         cmocka_unit_test_setup_teardown(bad_values_are_a_sentence, open_context, close_context),
         cmocka_unit_test_setup_teardown(every_allocation_refused_once, open_context, close_context),
         cmocka_unit_test_setup_teardown(random_bitmaps, open_context, close_context),

@@ -15,15 +15,15 @@ typedef struct jali_carve_options {
     double thickness_mm;     // of the plate, along z; 4 (default), > 0
     double frame_mm;         // solid frame around the picture; 0 (default) = none, larger: a wider frame
     double corner_radius_mm; // of the plate's corners; 0 (default) = sharp, up to half its shorter side
-    double hole_diameter_mm; // a hole to hang the plate by, at the middle of its top; 0 (default) = none. In the
-                             // frame when it is wide enough, else in a rounded ear above it
-    double hole_web_mm;      // least solid around the hole; 2 (default), > 0
+    double hole_diameter_mm; // a hole to hang the plate by, at the middle of its top; 0 (default) = none. In
+                             // the frame when it is wide enough, else in a rounded ear above it
+    double hole_web_mm; // least solid around the hole; 2 (default), > 0
 } jali_carve_options;
 
 JALI_API jali_carve_options jali_carve_defaults(void);
 
-/// The contours of a plate: those of the picture with the plate's outline and the hanging hole. A picture that
-/// ends in void (chart->outside_solid false) is its own outline and can have neither frame nor hole.
+/// The contours of a plate: those of the picture with the plate's outline and the hanging hole. A picture
+/// that ends in void (chart->outside_solid false) is its own outline and can have neither frame nor hole.
 ///   in     picture   from jali_trace with the same chart
 ///          opt       NULL means the defaults; thickness_mm plays no part
 ///   out    plate     outline and hole first, then the picture's; same orientation rules

@@ -12,8 +12,8 @@ extern "C" {
 #endif
 
 typedef struct jali_trace_options {
-    double deviation_mm; // how far the contour may leave the smooth curve it approximates; 0.01 (default), > 0;
-                         // larger: fewer points
+    double deviation_mm; // how far the contour may leave the smooth curve it approximates; 0.01 (default), >
+                         // 0; larger: fewer points
 } jali_trace_options;
 
 JALI_API jali_trace_options jali_trace_defaults(void);

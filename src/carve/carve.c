@@ -19,7 +19,8 @@ static jali_status join_contours(jali_context *ctx, const jali_contours *a, cons
 {
     jali_status status;
     *both = (jali_contours){.unit_mm = a->unit_mm};
-    if ((int64_t)a->point_count + b->point_count > INT32_MAX || (int64_t)a->contour_count + b->contour_count >= INT32_MAX)
+    if ((int64_t)a->point_count + b->point_count > INT32_MAX ||
+        (int64_t)a->contour_count + b->contour_count >= INT32_MAX)
         return fail(ctx, JALI_LIMIT, "the contours have more than 2^31 points");
     TRY(ALLOCATE_CLEARED(ctx, both->first, (size_t)a->contour_count + (size_t)b->contour_count + 1));
     TRY(ALLOCATE(ctx, both->point, (size_t)a->point_count + (size_t)b->point_count));
@@ -63,9 +64,10 @@ static void link_points(const jali_contours *contours, int32_t (*edge)[2])
 
 static jali_status report_touch(jali_context *ctx, const jali_contours *contours, int32_t p)
 {
-    return fail(ctx, JALI_BAD_INPUT,
-                "contours touch or cross near (%.3f, %.3f) mm: the outline must keep clear of the picture's voids",
-                contours->point[p][0] * contours->unit_mm, contours->point[p][1] * contours->unit_mm);
+    return fail(
+        ctx, JALI_BAD_INPUT,
+        "contours touch or cross near (%.3f, %.3f) mm: the outline must keep clear of the picture's voids",
+        contours->point[p][0] * contours->unit_mm, contours->point[p][1] * contours->unit_mm);
 }
 
 static jali_status triangulate(jali_context *ctx, const jali_contours *contours, const int32_t (*edge)[2],

@@ -1,5 +1,6 @@
 // The outline of a plate: a rectangle with round corners, a hole to hang it by, and an ear for the hole when
-// the frame is too narrow. The ear is a half disc around the hole, widened down to the plate's edge by fillets.
+// the frame is too narrow. The ear is a half disc around the hole, widened down to the plate's edge by
+// fillets.
 //
 // Checked: tests/test_carve.c: areas against their formulas, the web around the hole.
 #include "carve/plate.h"
@@ -8,11 +9,17 @@
 
 static const double ARC_DEVIATION_MM = 0.01;
 
-static int32_t units(double mm, const jali_chart *chart) { return (int32_t)lround(mm / chart->unit_mm); }
+static int32_t units(double mm, const jali_chart *chart)
+{
+    return (int32_t)lround(mm / chart->unit_mm);
+}
 
 static jali_status check_options(jali_context *ctx, const jali_chart *chart, const jali_carve_options *opt)
 {
-    const struct { const char *name; double mm, least; } value[] = {
+    const struct {
+        const char *name;
+        double mm, least;
+    } value[] = {
         {"thickness", opt->thickness_mm, chart->unit_mm},
         {"frame", opt->frame_mm, 0},
         {"corner radius", opt->corner_radius_mm, 0},
@@ -22,16 +29,18 @@ static jali_status check_options(jali_context *ctx, const jali_chart *chart, con
     const double most = (1 << 23) * chart->unit_mm;
     for (size_t i = 0; i < sizeof value / sizeof *value; i++)
         if (!(value[i].mm >= value[i].least && value[i].mm <= most))
-            return fail(ctx, JALI_BAD_VALUE, "a %s of %g mm: %g to %g mm is accepted", value[i].name, value[i].mm,
-                        value[i].least, most);
-    if (!chart->outside_solid && (opt->frame_mm > 0 || opt->hole_diameter_mm > 0 || opt->corner_radius_mm > 0))
+            return fail(ctx, JALI_BAD_VALUE, "a %s of %g mm: %g to %g mm is accepted", value[i].name,
+                        value[i].mm, value[i].least, most);
+    if (!chart->outside_solid &&
+        (opt->frame_mm > 0 || opt->hole_diameter_mm > 0 || opt->corner_radius_mm > 0))
         return fail(ctx, JALI_BAD_VALUE,
                     "a frame, round corners or a hanging hole need a picture whose outside is solid");
     return JALI_OK;
 }
 
 // The hole's centre is as low as the picture allows, and no lower than the plate's edge when it needs an ear.
-static jali_status lay_out_hole(jali_context *ctx, const jali_chart *chart, const jali_carve_options *opt, plate *p)
+static jali_status lay_out_hole(jali_context *ctx, const jali_chart *chart, const jali_carve_options *opt,
+                                plate *p)
 {
     double diameter = opt->hole_diameter_mm, web = opt->hole_web_mm, unit = chart->unit_mm;
     double width_mm = (p->right - p->left) * unit, needed_mm = diameter + 2 * web;
@@ -46,9 +55,11 @@ static jali_status lay_out_hole(jali_context *ctx, const jali_chart *chart, cons
         needed_mm += 2 * web + 2 * opt->corner_radius_mm;
     }
     if (needed_mm > width_mm)
-        return fail(ctx, JALI_NO_RESULT,
-                    "a hanging hole of %g mm with %g mm around it needs %g mm of the plate's top edge, which has "
-                    "%g mm: choose a smaller hole or a wider picture", diameter, web, needed_mm, width_mm);
+        return fail(
+            ctx, JALI_NO_RESULT,
+            "a hanging hole of %g mm with %g mm around it needs %g mm of the plate's top edge, which has "
+            "%g mm: choose a smaller hole or a wider picture",
+            diameter, web, needed_mm, width_mm);
     return JALI_OK;
 }
 
@@ -67,18 +78,23 @@ jali_status lay_out_plate(jali_context *ctx, const jali_chart *chart, const jali
         return fail(ctx, JALI_BAD_VALUE, "a margin of %d px leaves nothing of %d x %d px", chart->margin_px,
                     chart->width_px, chart->height_px);
     if (2 * p->corner > shorter)
-        return fail(ctx, JALI_BAD_VALUE, "a corner radius of %g mm: up to %g mm, half the plate's shorter side, is accepted",
+        return fail(ctx, JALI_BAD_VALUE,
+                    "a corner radius of %g mm: up to %g mm, half the plate's shorter side, is accepted",
                     opt->corner_radius_mm, 0.5 * shorter * chart->unit_mm);
     if (opt->hole_diameter_mm > 0) status = lay_out_hole(ctx, chart, opt, p);
     double highest = MAX(p->top, p->hole_y + p->ear_radius);
     if (status == JALI_OK && (p->left < -(1 << 24) || p->right > 1 << 24 || highest > 1 << 24))
-        return fail(ctx, JALI_LIMIT, "the plate is larger than %g mm, the most on this grid: choose larger pixels",
+        return fail(ctx, JALI_LIMIT,
+                    "the plate is larger than %g mm, the most on this grid: choose larger pixels",
                     (1 << 24) * chart->unit_mm);
     return status;
 }
 
 // A contour under construction; point NULL: count only.
-typedef struct pen { int32_t (*point)[2], count; double unit_mm; } pen;
+typedef struct pen {
+    int32_t (*point)[2], count;
+    double unit_mm;
+} pen;
 
 static void draw_point(pen *to, double x, double y)
 {
@@ -101,9 +117,11 @@ static void draw_arc(pen *to, double x, double y, double radius, double start, d
 
 static void draw_corner(pen *to, double x, double y, double radius, int quarter)
 {
-    if (radius < 1) draw_point(to, x, y);
+    if (radius < 1)
+        draw_point(to, x, y);
     else {
-        double cx = x + (quarter == 0 || quarter == 3 ? -radius : radius), cy = y + (quarter < 2 ? -radius : radius);
+        double cx = x + (quarter == 0 || quarter == 3 ? -radius : radius),
+               cy = y + (quarter < 2 ? -radius : radius);
         draw_arc(to, cx, cy, radius, quarter * M_PI_2, (quarter + 1) * M_PI_2);
     }
 }
@@ -144,7 +162,8 @@ static int32_t drop_repeats(int32_t (*point)[2], int32_t count)
     int32_t kept = 0;
     for (int32_t i = 0; i < count; i++) {
         const int32_t *before = kept > 0 ? point[kept - 1] : point[count - 1];
-        if (before[0] != point[i][0] || before[1] != point[i][1]) memmove(point[kept++], point[i], sizeof point[0]);
+        if (before[0] != point[i][0] || before[1] != point[i][1])
+            memmove(point[kept++], point[i], sizeof point[0]);
     }
     return kept;
 }

@@ -15,7 +15,8 @@ typedef struct plate {
 
 /// Check the options and lay out the plate.
 ///   fails  JALI_BAD_VALUE, JALI_NO_RESULT (no room for the hole), JALI_LIMIT
-jali_status lay_out_plate(jali_context *ctx, const jali_chart *chart, const jali_carve_options *opt, plate *p);
+jali_status lay_out_plate(jali_context *ctx, const jali_chart *chart, const jali_carve_options *opt,
+                          plate *p);
 
 /// The outline, counter-clockwise, and the hole, clockwise; arcs within ARC_DEVIATION_MM.
 ///   out    contours  one or two

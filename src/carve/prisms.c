@@ -1,10 +1,11 @@
 // The solid over the cells of a triangulation: each cell is a triangle with a height interval.
 //
 // How:     above each point of the plane stands a column with the levels at which a cell around it begins or
-//          ends. Floors and ceilings are the cells' own triangles. A wall stands on each edge where one cell is
-//          solid and its neighbour is not; it is cut at every level of its two columns, so that all walls on a
-//          column share its pieces: no T-junctions.
-// Manifold: an edge or vertex of the surface can only fail where solid sectors meet across it. Around a column
+//          ends. Floors and ceilings are the cells' own triangles. A wall stands on each edge where one cell
+//          is solid and its neighbour is not; it is cut at every level of its two columns, so that all walls
+//          on a column share its pieces: no T-junctions.
+// Manifold: an edge or vertex of the surface can only fail where solid sectors meet across it. Around a
+// column
 //          the solid must be one sector at every height; across an edge no cell may end where its neighbour
 //          begins; at a level the sectors above and below must overlap, and so must the void ones. Then the
 //          solid and the void around each point of the surface are both connected: one fan.
@@ -19,8 +20,14 @@ typedef struct columns {
     int32_t vertex_count;
 } columns;
 
-static bool is_solid(interval i) { return i.top > i.bottom; }
-static bool holds(interval i, int32_t low, int32_t high) { return i.bottom <= low && i.top >= high; }
+static bool is_solid(interval i)
+{
+    return i.top > i.bottom;
+}
+static bool holds(interval i, int32_t low, int32_t high)
+{
+    return i.bottom <= low && i.top >= high;
+}
 
 static void add_level(columns *c, int32_t p, int32_t z)
 {
@@ -32,7 +39,8 @@ static void add_level(columns *c, int32_t p, int32_t z)
     c->count[p]++;
 }
 
-static jali_status raise_columns(jali_context *ctx, const triangulation *plane, const interval *solid, columns *c)
+static jali_status raise_columns(jali_context *ctx, const triangulation *plane, const interval *solid,
+                                 columns *c)
 {
     jali_status status;
     TRY(ARENA(ctx, c->first, plane->point_count + 1));
@@ -83,7 +91,10 @@ static int free_parts(interval mine, interval other, interval part[2])
     return count;
 }
 
-typedef struct writer { int32_t (*triangle)[3]; int64_t count; } writer; // triangle NULL: count only
+typedef struct writer {
+    int32_t (*triangle)[3];
+    int64_t count;
+} writer; // triangle NULL: count only
 
 static inline void put(writer *w, int32_t a, int32_t b, int32_t c)
 {
@@ -103,12 +114,15 @@ static void put_wall(writer *w, const columns *c, int32_t a, int32_t b, interval
     while (i < i_end || j < j_end) {
         bool up_a = j == j_end || (i < i_end && level_a[i + 1] <= level_b[j + 1]);
         int32_t from = c->vertex[a] + i, across = c->vertex[b] + j;
-        if (up_a) put(w, from, across, c->vertex[a] + ++i);
-        else put(w, from, across, c->vertex[b] + ++j);
+        if (up_a)
+            put(w, from, across, c->vertex[a] + ++i);
+        else
+            put(w, from, across, c->vertex[b] + ++j);
     }
 }
 
-static void put_cell(writer *w, const columns *c, const triangulation *plane, const interval *solid, int32_t t)
+static void put_cell(writer *w, const columns *c, const triangulation *plane, const interval *solid,
+                     int32_t t)
 {
     interval mine = solid[t];
     int32_t top[3], bottom[3];
@@ -130,10 +144,13 @@ static void put_cell(writer *w, const columns *c, const triangulation *plane, co
 
 // Between two levels of column p: how often solid and void change around it, and which of the two occur both
 // here and in the slab above.
-typedef struct around { int changes; bool solid, empty, solid_above, empty_above, both_solid, both_empty; } around;
+typedef struct around {
+    int changes;
+    bool solid, empty, solid_above, empty_above, both_solid, both_empty;
+} around;
 
-static around look_around(const triangulation *plane, const interval *solid, int32_t p, int32_t low, int32_t level,
-                          int32_t high)
+static around look_around(const triangulation *plane, const interval *solid, int32_t p, int32_t low,
+                          int32_t level, int32_t high)
 {
     around a = {0};
     int32_t first = 4 * plane->star[p];
@@ -155,7 +172,8 @@ static bool is_one_fan(const triangulation *plane, const interval *solid, const 
 {
     const int32_t *level = c->level + c->first[p];
     for (int32_t i = 0; i < c->count[p]; i++) { // the slab that ends at level i, and the one above
-        int32_t low = i == 0 ? INT32_MIN : level[i - 1], high = i + 1 == c->count[p] ? INT32_MAX : level[i + 1];
+        int32_t low = i == 0 ? INT32_MIN : level[i - 1],
+                high = i + 1 == c->count[p] ? INT32_MAX : level[i + 1];
         around a = look_around(plane, solid, p, low, level[i], high);
         if (a.changes > 2 || (a.solid && a.solid_above && !a.both_solid) ||
             (a.empty && a.empty_above && !a.both_empty))
@@ -179,7 +197,8 @@ static jali_status check_contacts(jali_context *ctx, const triangulation *plane,
     for (int32_t q = 0; q < plane->point_count && p < 0; q++)
         if (c->count[q] > 0 && !is_one_fan(plane, solid, c, q)) p = q;
     if (p < 0) return JALI_OK;
-    return fail(ctx, JALI_BAD_INPUT, "parts of the solid meet in no more than an edge or a point at (%.3f, %.3f) mm",
+    return fail(ctx, JALI_BAD_INPUT,
+                "parts of the solid meet in no more than an edge or a point at (%.3f, %.3f) mm",
                 plane->point[p][0] * unit_mm, plane->point[p][1] * unit_mm);
 }
 

@@ -6,7 +6,9 @@
 #include <jali/mesh.h>
 
 /// The part of the height that is solid in a cell, lattice units; empty when top == bottom.
-typedef struct interval { int32_t bottom, top; } interval;
+typedef struct interval {
+    int32_t bottom, top;
+} interval;
 
 /// The boundary of the union of the prisms over the cells: floors, ceilings, and walls where the intervals of
 /// neighbours differ. Closed, without T-junctions, outward.

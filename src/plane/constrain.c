@@ -10,7 +10,9 @@
 
 enum { EDGES_A_STEP = 1 << 14 };
 
-typedef struct crossing { int32_t right, left; } crossing; // ends of an edge, seen along the constraint
+typedef struct crossing {
+    int32_t right, left;
+} crossing; // ends of an edge, seen along the constraint
 
 // Pending edges of one constraint: those still crossing it (a ring), and those made by flips.
 typedef struct pending {
@@ -66,8 +68,8 @@ static void leave_point(const triangulation *plane, int32_t a, int32_t b, int32_
 }
 
 // Collect the edges that the segment from a crosses on its way to b; *end is the point where that ends.
-static jali_status collect(jali_context *ctx, const triangulation *plane, int32_t a, int32_t b, pending *edges,
-                           size_t *count, int32_t *end, contact *met)
+static jali_status collect(jali_context *ctx, const triangulation *plane, int32_t a, int32_t b,
+                           pending *edges, size_t *count, int32_t *end, contact *met)
 {
     int32_t s;
     *count = 0;
@@ -155,8 +157,8 @@ static jali_status restore_delaunay(jali_context *ctx, triangulation *plane, con
     return JALI_OK;
 }
 
-static jali_status insert_edge(jali_context *ctx, triangulation *plane, int32_t from, int32_t to, uint8_t kind,
-                               bool through, pending *edges, contact *met)
+static jali_status insert_edge(jali_context *ctx, triangulation *plane, int32_t from, int32_t to,
+                               uint8_t kind, bool through, pending *edges, contact *met)
 {
     jali_status status = JALI_OK;
     int32_t a = plane->twin[from], b = plane->twin[to], end;

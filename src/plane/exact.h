@@ -1,7 +1,8 @@
 // The predicates of plane geometry, exact for coordinates of at most 2^24 in magnitude.
 //
-// Differences stay below 2^25 + 1, so an orientation fits 64 bits with room to spare; an in-circle determinant
-// is below 2^105 and is taken in 128 bits, after a floating-point filter that settles nearly all cases.
+// Differences stay below 2^25 + 1, so an orientation fits 64 bits with room to spare; an in-circle
+// determinant is below 2^105 and is taken in 128 bits, after a floating-point filter that settles nearly all
+// cases.
 #ifndef PLANE_EXACT_H
 #define PLANE_EXACT_H
 
@@ -29,7 +30,8 @@ static inline bool in_circle(const int32_t a[2], const int32_t b[2], const int32
     // Each factor is an integer below 2^53 and so exact as a double: three products and two sums round,
     // each by at most 2^-53 of the magnitude below.
     double sum = (double)a2 * (double)bc + (double)b2 * (double)ca + (double)c2 * (double)ab;
-    double magnitude = (double)a2 * fabs((double)bc) + (double)b2 * fabs((double)ca) + (double)c2 * fabs((double)ab);
+    double magnitude =
+        (double)a2 * fabs((double)bc) + (double)b2 * fabs((double)ca) + (double)c2 * fabs((double)ab);
     double bound = 8 * 0x1p-53 * magnitude;
     if (sum > bound) return true;
     if (sum < -bound) return false;

@@ -1,6 +1,7 @@
 // The order in which points enter a triangulation: near each other in turn, yet random in the large.
 //
-// Source:  Amenta, Choi, Rote: Incremental constructions con BRIO (2003). Half of the points, picked by a hash
+// Source:  Amenta, Choi, Rote: Incremental constructions con BRIO (2003). Half of the points, picked by a
+// hash
 //          of their index, enter in the last round, half of the rest in the round before, and so on; inside a
 //          round they follow a Hilbert curve. The rounds give the expected bounds of a random order whatever
 //          the input, the curve keeps the walks and the memory local.
@@ -9,7 +10,10 @@
 
 enum { HILBERT_BITS = 16, FIRST_ROUND_POINTS = 256, DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
-typedef struct keyed { uint64_t key; int32_t index; } keyed;
+typedef struct keyed {
+    uint64_t key;
+    int32_t index;
+} keyed;
 
 // Position of cell (x, y) on the Hilbert curve over 2^16 x 2^16 cells.
 static uint64_t hilbert_position(uint32_t x, uint32_t y)

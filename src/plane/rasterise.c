@@ -22,12 +22,14 @@ static void toggle_edge(const int32_t from[2], const int32_t to[2], int64_t half
     last = MIN(last, bitmap->height_px - 1);
     int64_t dx = high[0] - low[0], dy = high[1] - low[1];
     for (int64_t r = first; r <= last; r++) {
-        // Column c is right of the edge when its centre (2 c + 1) * half > crossing = low.x + along * dx / dy.
+        // Column c is right of the edge when its centre (2 c + 1) * half > crossing = low.x + along * dx /
+        // dy.
         int64_t along = (2 * r + 1) * half - low[1];
         int64_t column = floor_divide((low[0] - half) * dy + along * dx, 2 * half * dy) + 1;
         if (column >= bitmap->width_px) continue;
         column = MAX(column, 0);
-        bitmap->word[(bitmap->height_px - 1 - r) * bitmap->stride + (column >> 6)] ^= (uint64_t)1 << (column & 63);
+        bitmap->word[(bitmap->height_px - 1 - r) * bitmap->stride + (column >> 6)] ^= (uint64_t)1
+                                                                                      << (column & 63);
     }
 }
 

@@ -7,8 +7,8 @@
 #include <jali/chart.h>
 #include <jali/contours.h>
 
-/// The pixels whose centres lie inside: exact, by parity, beginning from what lies outside the chart. A centre
-/// on a contour belongs to the side on its left (smaller x).
+/// The pixels whose centres lie inside: exact, by parity, beginning from what lies outside the chart. A
+/// centre on a contour belongs to the side on its left (smaller x).
 ///   in     contours   in the frame of the chart
 ///   out    bitmap     chart->width_px x chart->height_px
 ///   fails  JALI_NO_MEMORY, JALI_LIMIT

@@ -1,6 +1,7 @@
 // Delaunay triangulation of lattice points, one point at a time.
 //
-// Source:  Lawson's flips (1977) in the order of order.c. The hull is closed by ghost triangles that share one
+// Source:  Lawson's flips (1977) in the order of order.c. The hull is closed by ghost triangles that share
+// one
 //          corner at infinity (Guibas and Stolfi 1985), so a point outside needs no case of its own.
 // Limits:  |coordinate| <= 2^24; fewer than 2^27 points. Points at the same place are stored once (twin).
 // Checked: tests/test_plane.c: every side against the in-circle definition; grids, circles, lines, random.
@@ -77,7 +78,8 @@ void flip_side(triangulation *plane, int32_t s)
     if (b != GHOST) plane->star[b] = o >> 2;
 }
 
-// Flip away the edges opposite p whose other triangle has p in its circle. The sides to test are on the stack.
+// Flip away the edges opposite p whose other triangle has p in its circle. The sides to test are on the
+// stack.
 static void settle(triangulation *plane, int32_t p, int32_t *stack, int32_t depth)
 {
     while (depth > 0) {
@@ -182,11 +184,14 @@ static void insert_point(triangulation *plane, int32_t p)
             plane->twin[p] = corner;
             return;
         }
-        if (orientation(plane->point[plane->corner[next_side(s)]], plane->point[plane->corner[last_side(s)]], at) == 0)
+        if (orientation(plane->point[plane->corner[next_side(s)]], plane->point[plane->corner[last_side(s)]],
+                        at) == 0)
             on_side = s;
     }
-    if (on_side >= 0) split_side(plane, on_side, p);
-    else split_triangle(plane, t, p);
+    if (on_side >= 0)
+        split_side(plane, on_side, p);
+    else
+        split_triangle(plane, t, p);
 }
 
 // The first triangle and its three ghosts: the first point of the order, the next elsewhere, and the next off
@@ -197,8 +202,10 @@ static bool begin(triangulation *plane, const int32_t *order, int32_t count)
     int32_t a = order[0], b = a, c = a;
     for (int32_t i = 1; i < count && c == a; i++) {
         int32_t p = order[i];
-        if (b == a && (point[p][0] != point[a][0] || point[p][1] != point[a][1])) b = p;
-        else if (b != a && orientation(point[a], point[b], point[p]) != 0) c = p;
+        if (b == a && (point[p][0] != point[a][0] || point[p][1] != point[a][1]))
+            b = p;
+        else if (b != a && orientation(point[a], point[b], point[p]) != 0)
+            c = p;
     }
     if (c == a) return false;
     if (orientation(point[a], point[b], point[c]) < 0) {
@@ -228,8 +235,8 @@ jali_status insert_points(jali_context *ctx, triangulation *plane, const int32_t
                     (long long)first + count, POINT_LIMIT);
     for (int32_t i = 0; i < count; i++)
         if (abs(point[i][0]) > COORDINATE_LIMIT || abs(point[i][1]) > COORDINATE_LIMIT)
-            return fail(ctx, JALI_BAD_INPUT, "point (%d, %d) lies outside the lattice of +-%d units", point[i][0],
-                        point[i][1], COORDINATE_LIMIT);
+            return fail(ctx, JALI_BAD_INPUT, "point (%d, %d) lies outside the lattice of +-%d units",
+                        point[i][0], point[i][1], COORDINATE_LIMIT);
     if (plane->triangle_count == 0) first = 0; // all on one line so far: begin again
     int32_t end = plane->point_count + count;
     TRY(reserve(ctx, plane, end));

@@ -15,32 +15,39 @@ enum { EDGE_CONTOUR = 1, EDGE_CREASE = 2 };
 /// from corner[next_side(s)] to corner[last_side(s)], counter-clockwise. 4t+3 is unused.
 typedef struct triangulation {
     int32_t point_count;
-    int32_t (*point)[2];     // [point_count]
-    int32_t *twin;           // [point_count] itself, or the earlier point at the same place
-    int32_t *star;           // [point_count] a triangle at each point that is its own twin
-    int32_t triangle_count;  // ghosts included
-    int32_t *corner;         // [4 * triangle_count] point, or GHOST
-    int32_t *beside;         // [4 * triangle_count] the same edge as a side of the neighbour
-    uint8_t *kind;           // [4 * triangle_count] 0, or the kinds of a constrained edge
-    int32_t *stack;          // scratch of the flips
+    int32_t (*point)[2];    // [point_count]
+    int32_t *twin;          // [point_count] itself, or the earlier point at the same place
+    int32_t *star;          // [point_count] a triangle at each point that is its own twin
+    int32_t triangle_count; // ghosts included
+    int32_t *corner;        // [4 * triangle_count] point, or GHOST
+    int32_t *beside;        // [4 * triangle_count] the same edge as a side of the neighbour
+    uint8_t *kind;          // [4 * triangle_count] 0, or the kinds of a constrained edge
+    int32_t *stack;         // scratch of the flips
     size_t point_capacity, side_capacity, stack_capacity;
-    int32_t recent;          // where the next walk begins
+    int32_t recent; // where the next walk begins
 } triangulation;
 
 /// What stops an edge from being inserted.
 typedef struct contact {
     enum { NO_CONTACT, EDGES_CROSS, EDGE_MEETS_POINT } found;
-    int32_t from, to;      // the edge being inserted
-    int32_t other[2];      // the constrained edge it crosses, or {point, point}
+    int32_t from, to; // the edge being inserted
+    int32_t other[2]; // the constrained edge it crosses, or {point, point}
 } contact;
 
-static inline int32_t next_side(int32_t s) { return (s & 3) == 2 ? s - 2 : s + 1; }
-static inline int32_t last_side(int32_t s) { return (s & 3) == 0 ? s + 2 : s - 1; }
+static inline int32_t next_side(int32_t s)
+{
+    return (s & 3) == 2 ? s - 2 : s + 1;
+}
+static inline int32_t last_side(int32_t s)
+{
+    return (s & 3) == 0 ? s + 2 : s - 1;
+}
 
 /// True when a corner of triangle t is the ghost.
 static inline bool is_ghost(const triangulation *plane, int32_t t)
 {
-    return plane->corner[4 * t] == GHOST || plane->corner[4 * t + 1] == GHOST || plane->corner[4 * t + 2] == GHOST;
+    return plane->corner[4 * t] == GHOST || plane->corner[4 * t + 1] == GHOST ||
+           plane->corner[4 * t + 2] == GHOST;
 }
 
 void triangulation_free(jali_context *ctx, triangulation *plane);

@@ -17,7 +17,7 @@ static const double HELD_PX = 0.05;
 // The curve near one vertex: from the middle of the edge before, past the vertex, to the middle of the next.
 typedef struct bend {
     double start[2], at[2], end[2];
-    double reach;  // how far the handles go towards the vertex: 0.55 (blunt) .. 1
+    double reach; // how far the handles go towards the vertex: 0.55 (blunt) .. 1
     bool corner;
 } bend;
 
@@ -60,24 +60,31 @@ static int arc_steps(const bend *b)
 static int leg(const bend *from, const bend *to, double point[LEG_POINTS][2])
 {
     int count = 0, steps = arc_steps(from);
-    if (from->corner) memcpy(point[count++], from->at, sizeof from->at);
+    if (from->corner)
+        memcpy(point[count++], from->at, sizeof from->at);
     else
         for (int i = 0; i < steps; i++) bend_point(from, 0.5 + 0.5 * i / steps, point[count++]);
     memcpy(point[count++], from->end, sizeof from->end);
     steps = arc_steps(to);
-    if (to->corner) memcpy(point[count++], to->at, sizeof to->at);
+    if (to->corner)
+        memcpy(point[count++], to->at, sizeof to->at);
     else
         for (int i = 1; i <= steps; i++) bend_point(to, 0.5 * i / steps, point[count++]);
     return count;
 }
 
 // A crack: its midpoint in px, its direction.
-typedef struct crack { double x, y; int8_t direction; } crack;
+typedef struct crack {
+    double x, y;
+    int8_t direction;
+} crack;
 
-// Where the curve passes a crack, seen from its midpoint: how far to the left, px, and how many times longer a
-// deviation is along this line than square to the curve. Beyond the ends of the leg its first and last pieces
-// go on straight; `piece` moves along with the cracks.
-typedef struct passage { double offset, stretch; } passage;
+// Where the curve passes a crack, seen from its midpoint: how far to the left, px, and how many times longer
+// a deviation is along this line than square to the curve. Beyond the ends of the leg its first and last
+// pieces go on straight; `piece` moves along with the cracks.
+typedef struct passage {
+    double offset, stretch;
+} passage;
 
 static passage pass_crack(const double (*point)[2], int count, const crack *c, int *piece)
 {
@@ -89,7 +96,8 @@ static passage pass_crack(const double (*point)[2], int count, const crack *c, i
     if (run < 1e-3 * fabs(rise) || run < 1e-9) return (passage){0, 1e3};
     double offset = a[across] + (level - a[along]) * sign / run * rise - (along ? c->x : c->y);
     // Left is +y of a crack in +x, -x of a crack in +y, and so on.
-    return (passage){c->direction == 0 || c->direction == 3 ? offset : -offset, sqrt(run * run + rise * rise) / run};
+    return (passage){c->direction == 0 || c->direction == 3 ? offset : -offset,
+                     sqrt(run * run + rise * rise) / run};
 }
 
 // Put the crossing of a crack `offset` units to the left of its midpoint, or as near to that as its pixel
@@ -105,7 +113,8 @@ static void place_crossing(crossing *fine, double offset, int32_t half)
 
 static crossing cross_one(const crack *c, passage p, int32_t unit, int32_t slack)
 {
-    crossing fine = {.at = {(int32_t)lround(c->x * unit), (int32_t)lround(c->y * unit)}, .direction = c->direction};
+    crossing fine = {.at = {(int32_t)lround(c->x * unit), (int32_t)lround(c->y * unit)},
+                     .direction = c->direction};
     fine.room = (int32_t)MIN(slack * p.stretch, unit) + 1;
     fine.middle = fine.at[!(c->direction & 1)];
     fine.held = fabs(p.offset) > 0.5 + HELD_PX * p.stretch;
@@ -151,7 +160,8 @@ static bool corner_point(const outline *o, int32_t v, int32_t unit, crossing *fi
     double dx = o->place[v][0] - here->x, dy = o->place[v][1] - here->y;
     double size = sqrt(dx * dx + dy * dy), most = 0.5 - 1.5 / unit, shrink = size > most ? most / size : 1;
     *fine = (crossing){.at = {here->x * unit + (int32_t)lround(dx * shrink * unit),
-                              here->y * unit + (int32_t)lround(dy * shrink * unit)}, .direction = CORNER};
+                              here->y * unit + (int32_t)lround(dy * shrink * unit)},
+                       .direction = CORNER};
     return true;
 }
 
@@ -172,7 +182,8 @@ int32_t cross_cracks(const outline *o, int32_t unit, int32_t slack, crossing *fi
             int32_t length = abs(b->x - a->x) + abs(b->y - a->y);
             for (int32_t j = 0; j < length; j++) {
                 crack c = {a->x + (j + 0.5) * dx, a->y + (j + 0.5) * dy, direction};
-                fine[count++] = cross_one(&c, pass_crack((const double(*)[2])point, points, &c, &piece), unit, slack);
+                fine[count++] =
+                    cross_one(&c, pass_crack((const double(*)[2])point, points, &c, &piece), unit, slack);
             }
         }
         from = to;

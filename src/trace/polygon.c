@@ -30,7 +30,10 @@ static const double EDGE_COST = 0.7;
 // The most that pixels add to the squared distance of one crack from a straight line.
 static const double PIXEL_NOISE = 1.0 / 8;
 
-static inline const turn *turn_at(const outline *o, int32_t i) { return &o->turn[i < o->n ? i : i - o->n]; }
+static inline const turn *turn_at(const outline *o, int32_t i)
+{
+    return &o->turn[i < o->n ? i : i - o->n];
+}
 
 static inline int32_t run_px(const outline *o, int32_t i)
 {
@@ -41,11 +44,14 @@ static inline int32_t run_px(const outline *o, int32_t i)
 // A corner of the drawing: four turns are a rectangle, whatever its size.
 static bool is_square(const outline *o, int32_t i)
 {
-    return o->n == 4 || (run_px(o, i) >= SQUARE_RUN_PX && run_px(o, i == 0 ? o->n - 1 : i - 1) >= SQUARE_RUN_PX);
+    return o->n == 4 ||
+           (run_px(o, i) >= SQUARE_RUN_PX && run_px(o, i == 0 ? o->n - 1 : i - 1) >= SQUARE_RUN_PX);
 }
 
 // Sums over crack midpoints, px from some turn.
-typedef struct sums { double n, x, y, xx, xy, yy; } sums;
+typedef struct sums {
+    double n, x, y, xx, xy, yy;
+} sums;
 
 // Add the run from turn a to turn b, seen from `origin`.
 static inline void add_run(sums *s, const turn *origin, const turn *a, const turn *b)
@@ -64,7 +70,8 @@ static inline void add_run(sums *s, const turn *origin, const turn *a, const tur
 // Sum of the squared distances from the least-squares line.
 static inline double residual(const sums *s)
 {
-    double xx = s->xx - s->x * s->x / s->n, xy = s->xy - s->x * s->y / s->n, yy = s->yy - s->y * s->y / s->n;
+    double x = s->x / s->n, y = s->y / s->n;
+    double xx = s->xx - x * s->x, xy = s->xy - x * s->y, yy = s->yy - y * s->y;
     return MAX(0.5 * (xx + yy - sqrt((xx - yy) * (xx - yy) + 4 * xy * xy)), 0);
 }
 
@@ -106,7 +113,9 @@ void best_polygon(outline *o)
 }
 
 // A quadratic form: squared distance from a line, as v^T Q v with v = (x, y, 1).
-typedef struct form { double xx, xy, yy, x, y, c; } form;
+typedef struct form {
+    double xx, xy, yy, x, y, c;
+} form;
 
 // The least-squares line of the cracks between turns i and end, seen from turn i: a middle point and a
 // direction, of unit length.
@@ -121,8 +130,10 @@ static void fit_line(const outline *o, int32_t i, int32_t end, double middle[2],
     const turn *from = turn_at(o, i), *to = turn_at(o, end);
     double chord[2] = {to->x - from->x, to->y - from->y}, length;
     // The principal axis; a single crack has none, its chord serves.
-    if (largest - c >= largest - a) along[0] = largest - c, along[1] = b;
-    else along[0] = b, along[1] = largest - a;
+    if (largest - c >= largest - a)
+        along[0] = largest - c, along[1] = b;
+    else
+        along[0] = b, along[1] = largest - a;
     length = hypot(along[0], along[1]);
     if (length < 1e-6) along[0] = chord[0], along[1] = chord[1], length = hypot(chord[0], chord[1]);
     if (along[0] * chord[0] + along[1] * chord[1] < 0) length = -length;
@@ -132,10 +143,12 @@ static void fit_line(const outline *o, int32_t i, int32_t end, double middle[2],
 
 // In the frame of a line: how the room between the solid centres on its left and the void ones on its right
 // lies once the line is turned by `tilt`.
-typedef struct room { double left, right, left_at, right_at; } room; // heights over the line, and where along it
+typedef struct room {
+    double left, right, left_at, right_at;
+} room; // heights over the line, and where along it
 
-static inline void narrow(room *r, const double middle[2], const double along[2], double tilt, double x, double y,
-                          double side)
+static inline void narrow(room *r, const double middle[2], const double along[2], double tilt, double x,
+                          double y, double side)
 {
     x -= middle[0], y -= middle[1];
     double u = along[0] * x + along[1] * y;
@@ -144,8 +157,8 @@ static inline void narrow(room *r, const double middle[2], const double along[2]
     if (side < 0 && w > r->right) r->right = w, r->right_at = u;
 }
 
-static room room_beside(const outline *o, int32_t i, int32_t end, const double middle[2], const double along[2],
-                        double tilt)
+static room room_beside(const outline *o, int32_t i, int32_t end, const double middle[2],
+                        const double along[2], double tilt)
 {
     room r = {INFINITY, -INFINITY, 0, 0};
     const turn *from = turn_at(o, i);
@@ -162,23 +175,27 @@ static room room_beside(const outline *o, int32_t i, int32_t end, const double m
     return r;
 }
 
-// Pixels of a straight edge leave a narrow band of lines that keep every centre on its side; the least-squares
-// line can miss it. Then take the middle of the band, if there is one. The room is a concave function of the
-// tilt, so bisection finds its largest.
+// Pixels of a straight edge leave a narrow band of lines that keep every centre on its side; the
+// least-squares line can miss it. Then take the middle of the band, if there is one. The room is a concave
+// function of the tilt, so bisection finds its largest.
 static void keep_centres(const outline *o, int32_t i, int32_t end, double middle[2], double along[2])
 {
     if (end - i < STRAIGHT_TURNS) return;
     room r = room_beside(o, i, end, middle, along, 0);
     if (r.left > CENTRE_ROOM_PX && r.right < -CENTRE_ROOM_PX) return;
     const turn *from = turn_at(o, i), *to = turn_at(o, end);
-    double most = 2 / hypot(to->x - from->x, to->y - from->y), low = -most, high = most, best = 0, best_tilt = 0;
+    double most = 2 / hypot(to->x - from->x, to->y - from->y), low = -most, high = most, best = 0,
+           best_tilt = 0;
     double best_height = 0;
     for (int step = 0; step < 14; step++) {
         double tilt = 0.5 * (low + high);
         r = room_beside(o, i, end, middle, along, tilt);
-        if (r.left - r.right > best) best = r.left - r.right, best_tilt = tilt, best_height = 0.5 * (r.left + r.right);
-        if (r.right_at > r.left_at) low = tilt;
-        else high = tilt;
+        if (r.left - r.right > best)
+            best = r.left - r.right, best_tilt = tilt, best_height = 0.5 * (r.left + r.right);
+        if (r.right_at > r.left_at)
+            low = tilt;
+        else
+            high = tilt;
     }
     if (best <= 0) return;
     double x = along[0] - best_tilt * along[1], y = along[1] + best_tilt * along[0], length = hypot(x, y);
@@ -217,8 +234,10 @@ static void least_within_reach(const form *q, double place[2])
     }
     for (int side = 0; side < 4; side++) {
         double edge = side & 1 ? REACH_PX : -REACH_PX, x, y;
-        if (side < 2) x = edge, y = q->yy > 1e-9 ? -(q->y + q->xy * x) / q->yy : 0;
-        else y = edge, x = q->xx > 1e-9 ? -(q->x + q->xy * y) / q->xx : 0;
+        if (side < 2)
+            x = edge, y = q->yy > 1e-9 ? -(q->y + q->xy * x) / q->yy : 0;
+        else
+            y = edge, x = q->xx > 1e-9 ? -(q->x + q->xy * y) / q->xx : 0;
         x = MIN(MAX(x, -REACH_PX), REACH_PX), y = MIN(MAX(y, -REACH_PX), REACH_PX);
         if (form_at(q, x, y) < least) least = form_at(q, x, y), place[0] = x, place[1] = y;
     }
@@ -226,7 +245,8 @@ static void least_within_reach(const form *q, double place[2])
 
 // Let the vertex be the turn nearest to its place, so that corners stand in their own cells. It does not pass
 // the vertices beside it.
-static int32_t nearest_turn(const outline *o, int32_t before, int32_t here, int32_t after, const double place[2])
+static int32_t nearest_turn(const outline *o, int32_t before, int32_t here, int32_t after,
+                            const double place[2])
 {
     int32_t best = here;
     double least = INFINITY;

@@ -4,15 +4,22 @@
 // test is exact: the argument in trace.c for why contours cannot touch needs no more than this.
 #include "trace/path.h"
 
-typedef struct wedge { int64_t right[2], left[2]; bool open; } wedge;
+typedef struct wedge {
+    int64_t right[2], left[2];
+    bool open;
+} wedge;
 
-static inline int64_t cross(const int64_t a[2], const int64_t b[2]) { return a[0] * b[1] - a[1] * b[0]; }
+static inline int64_t cross(const int64_t a[2], const int64_t b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
 
 // Narrow the directions from `from` to those that cross `c` within its limits. False when none is left.
 static bool pass(wedge *w, const int32_t from[2], const crossing *c)
 {
     int across = !(c->direction & 1);
-    int64_t left[2] = {(int64_t)c->at[0] - from[0], (int64_t)c->at[1] - from[1]}, right[2] = {left[0], left[1]};
+    int64_t left[2] = {(int64_t)c->at[0] - from[0], (int64_t)c->at[1] - from[1]},
+            right[2] = {left[0], left[1]};
     left[across] = (int64_t)c->left - from[across];
     right[across] = (int64_t)c->right - from[across];
     if (w->open) {

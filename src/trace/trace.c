@@ -1,24 +1,28 @@
 // trace: from pixels to smooth contours that cannot touch.
 //
-// How: follow the cracks (follow.c); lay a polygon with few edges along each path and fit its vertices
-// (polygon.c); bend a smooth curve over it and note where it crosses each crack (cross.c); keep few of these
-// crossings (simplify.c).
+// How: follow the cracks (follow.c); fit a polygon with few edges to each path (polygon.c); bend a smooth
+// curve over it, note where it crosses each crack, and where a pixel centre holds it back ease it in
+// (cross.c); keep few of these crossings (simplify.c). Only the last two steps' integers decide; the fit may
+// be as bold as it likes, it can cost beauty but no promise.
 //
 // Why no two contours touch. Join the centres of 4-neighbours: they form square cells with a pixel centre at
 // each corner. A contour crosses a side of a cell exactly where the side joins a solid centre to a void one,
-// once, strictly between the two: each crack has its crossing, and a chord that skips crossings passes each of
-// the skipped sides strictly between its centres too, because it has the solid centre strictly on its left
+// once, strictly between the two: each crack has its crossing, and a chord that skips crossings passes each
+// of the skipped sides strictly between its centres too, because it has the solid centre strictly on its left
 // and the void one strictly on its right. (A line that does so for two sides of one convex cell crosses the
-// cell from the one to the other, so the chord meets the sides in the order of the cracks.) What happens inside
-// a cell is then all there is to see:
-//   - two sides crossed: one contour passes, by a straight piece or by two pieces through a corner point inside
+// cell from the one to the other, so the chord meets the sides in the order of the cracks.) What happens
+// inside a cell is then all there is to see:
+//   - two sides crossed: one contour passes, by a straight piece or by two pieces through a corner point
+//   inside
 //     the cell. It touches neither itself nor a centre.
-//   - four sides crossed (solid and void like a chequer): the cracks pair them so that each piece cuts off one
-//     solid centre; corner points are not allowed there. Let the cell be [0,1]^2 with solids at (0,0) and (1,1):
-//     one piece runs from (0,a) to (b,0) with a, b < 1 and lies in x + y < 1, the other in x + y > 1.
-// Sides are crossed once, cells share only sides, so the contours are disjoint simple polygons. Along each side
-// the colour changes where it did in the bitmap, so every centre keeps its side, and every piece lies in the
-// hull of the crossings of its cell: less than half a pixel from the cracks in it.
+//   - four sides crossed (solid and void like a chequer): the cracks pair them so that each piece cuts off
+//   one
+//     solid centre; corner points are not allowed there. Let the cell be [0,1]^2 with solids at (0,0) and
+//     (1,1): one piece runs from (0,a) to (b,0) with a, b < 1 and lies in x + y < 1, the other in x + y > 1.
+// Sides are crossed once, cells share only sides, so the contours are disjoint simple polygons. Along each
+// side the colour changes where it did in the bitmap, so every centre keeps its side, and every piece lies in
+// the hull of the crossings of its cell, or ends at a corner point less than half a pixel from the turn: less
+// than half a pixel from the cracks.
 //
 // Checked: tests/test_trace.c: all 4 x 4 bitmaps, random ones, exactly, with a sweep for contacts.
 #include <jali/trace.h>
@@ -38,15 +42,15 @@ jali_trace_options jali_trace_defaults(void)
 typedef struct tracing {
     const crack_paths *paths;
     int32_t unit, slack;
-    int32_t begin;             // first path of the batch
-    const int32_t *group;      // [groups + 1] first path of each group
-    bool *square, *corner;     // scratch: a slot a turn and one more a path
+    int32_t begin;         // first path of the batch
+    const int32_t *group;  // [groups + 1] first path of each group
+    bool *square, *corner; // scratch: a slot a turn and one more a path
     int32_t *from, *vertex;
     double *cost, (*line)[4], (*place)[2];
-    crossing *fine;            // cracks and corners
+    crossing *fine; // cracks and corners
     int32_t (*point)[2];
-    int64_t *first_fine;       // [paths + 1] where a path's fine points begin, from the first path of all
-    int32_t *points;           // [paths] points kept
+    int64_t *first_fine; // [paths + 1] where a path's fine points begin, from the first path of all
+    int32_t *points;     // [paths] points kept
 } tracing;
 
 static void trace_path(tracing *t, int32_t path)
