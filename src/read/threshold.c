@@ -2,9 +2,11 @@
 //
 // Source:  N. Otsu, A threshold selection method from gray-level histograms, 1979; J. Sauvola and
 //          M. Pietikainen, Adaptive document image binarization, 2000.
-// Differs: Otsu's level is taken halfway between the means of its two parts: the same split, but in the middle
-//          of an empty stretch of the histogram, where anti-aliased edges belong. Sauvola's result is kept as a
-//          distance in grey levels, so that edges keep their place between pixels.
+// Differs: Otsu's level is taken halfway between the means of its two parts: the same split, but in the
+// middle
+//          of an empty stretch of the histogram, where anti-aliased edges belong. Sauvola's result is kept as
+//          a distance in grey levels, so that edges keep their place between pixels; and what is darker than
+//          a third of Otsu's level stays black, or the dark clothes of a portrait would be hollow.
 // Checked: tests/test_read.c.
 #include "read/read.h"
 
@@ -113,7 +115,7 @@ typedef struct local_job {
     uint8_t *to;
     uint32_t *column_sum, *column_square; // [bands * width]
     int32_t radius, rows_a_band;
-    double contrast;
+    double contrast, darkest; // below darkest a pixel is black whatever is around it
 } local_job;
 
 static void add_row(const uint8_t *grey, int32_t width, uint32_t sign, uint32_t *sum, uint32_t *square)
@@ -124,11 +126,12 @@ static void add_row(const uint8_t *grey, int32_t width, uint32_t sign, uint32_t 
     }
 }
 
-static uint8_t distance_from_local(uint8_t grey, double count, double sum, double square, double contrast)
+static uint8_t distance_from_local(const local_job *job, uint8_t grey, double count, double sum,
+                                   double square)
 {
     double mean = sum / count, variance = square / count - mean * mean;
     double deviation = variance > 0 ? sqrt(variance) : 0;
-    double level = mean * (1 + contrast * (deviation / MIDDLE - 1));
+    double level = MAX(mean * (1 + job->contrast * (deviation / MIDDLE - 1)), job->darkest);
     double distance = floor(MIDDLE + grey - level);
     return (uint8_t)(distance < 0 ? 0 : distance > 255 ? 255 : distance);
 }
@@ -143,7 +146,7 @@ static void local_row(const local_job *job, const uint32_t *column_sum, const ui
         if (x + radius < width) sum += column_sum[x + radius], square += column_square[x + radius];
         if (x > radius) sum -= column_sum[x - radius - 1], square -= column_square[x - radius - 1];
         double count = (double)rows * (MIN(x + radius, width - 1) - MAX(x - radius, 0) + 1);
-        to[x] = distance_from_local(grey[x], count, (double)sum, (double)square, job->contrast);
+        to[x] = distance_from_local(job, grey[x], count, (double)sum, (double)square);
     }
 }
 
@@ -168,13 +171,15 @@ static void local_band(void *shared, int32_t index)
     }
 }
 
-static jali_status local(jali_context *ctx, jali_picture *picture, const jali_threshold_options *opt)
+static jali_status local(jali_context *ctx, jali_picture *picture, const jali_threshold_options *opt,
+                         int32_t otsu_level)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
     int64_t width = picture->width_px, height = picture->height_px;
     int32_t window = opt->window_px ? opt->window_px : (int32_t)MAX(MIN(width, height) / 16, SMALLEST_WINDOW);
     local_job job = {.from = picture, .radius = MIN(window, MOST_WINDOW) / 2, .contrast = opt->contrast};
+    job.darkest = otsu_level / 3.0;
     job.rows_a_band = MAX(4 * job.radius, 64);
     int32_t bands = (int32_t)((height + job.rows_a_band - 1) / job.rows_a_band);
     TRY(ARENA(ctx, job.column_sum, bands * width));
@@ -209,8 +214,11 @@ jali_status jali_threshold(jali_context *ctx, jali_picture *picture, const jali_
     histogram levels;
     *threshold = MIDDLE;
     TRY(check_options(ctx, &opt));
-    if (opt.method == JALI_THRESHOLD_LOCAL) TRY(local(ctx, picture, &opt));
     TRY(count_picture(ctx, picture, &levels));
+    if (opt.method == JALI_THRESHOLD_LOCAL) {
+        TRY(local(ctx, picture, &opt, otsu(&levels)));
+        TRY(count_picture(ctx, picture, &levels));
+    }
     if (opt.method == JALI_THRESHOLD_FIXED) *threshold = opt.level;
     if (opt.method == JALI_THRESHOLD_AUTO) *threshold = otsu(&levels);
     TRY(check_two_tones(ctx, &levels, *threshold));
