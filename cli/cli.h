@@ -2,10 +2,7 @@
 #ifndef CLI_CLI_H
 #define CLI_CLI_H
 
-#include <jali/base.h>
-#include <jali/bytes.h>
-#include <jali/place.h>
-#include <jali/read.h>
+#include <jali/jali.h>
 #include "base/base.h"
 
 enum { MOST_OUTPUTS = 8 };
@@ -29,8 +26,7 @@ typedef struct settings {
     int32_t output_count;
     const char *json, *report;
     jali_read_options read;
-    jali_threshold_options threshold;
-    jali_place_options place;
+    jali_options make;       // of all stages
     int32_t size_px;         // of a sample
     bool skip_intersections; // of check
     jali_context_options context;
@@ -41,15 +37,17 @@ typedef struct settings {
 
 /// Which options a verb takes; an option belongs to one group.
 typedef enum option_group {
-    GROUP_PICTURE = 1, // reading and thresholding
-    GROUP_SIZE = 2,    // size on the surface, printer
-    GROUP_FILES = 4,   // -o
-    GROUP_SAMPLE = 8,
-    GROUP_CHECK = 16,
-    GROUP_RUN = 32, // every verb
-    GROUP_JSON = 64,
-    GROUP_REPORT = 128,
-    GROUP_OVERWRITE = 256,
+    GROUP_FILES = 1, // -o
+    GROUP_JSON = 2,
+    GROUP_REPORT = 4,
+    GROUP_OVERWRITE = 8,
+    GROUP_PICTURE = 16, // reading and thresholding
+    GROUP_SIZE = 32,    // size on the surface, printer
+    GROUP_METHOD = 64,  // the image method
+    GROUP_PLATE = 128,  // the solid
+    GROUP_SAMPLE = 256,
+    GROUP_CHECK = 512,
+    GROUP_RUN = 1024, // every verb
 } option_group;
 
 typedef struct verb {
@@ -65,11 +63,21 @@ const verb *verb_list(int32_t *count);
 
 jali_status run_sample(jali_context *ctx, const settings *set);
 jali_status run_list(jali_context *ctx, const settings *set);
+jali_status run_adapt(jali_context *ctx, const settings *set);
+jali_status run_carve(jali_context *ctx, const settings *set);
 jali_status run_check(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 
-/// Read, threshold: the picture the user named, an SVG too where librsvg is at hand.
-jali_status load_picture(jali_context *ctx, const settings *set, jali_picture *picture, int32_t *threshold);
+/// The picture the user named, an SVG too where librsvg is at hand.
+jali_status load_picture(jali_context *ctx, const settings *set, jali_picture *picture);
+
+/// What a run found, as JSON (docs/json.md); appended, with a line end.
+jali_status figures_json(jali_context *ctx, const settings *set, const jali_picture *picture,
+                         const jali_result *result, jali_bytes *json);
+
+/// The same for people: one HTML file with its pictures inside.
+jali_status report_html(jali_context *ctx, const settings *set, const jali_picture *picture,
+                        const jali_result *result, jali_bytes *html);
 
 #ifdef JALI_HAVE_RSVG
 bool looks_like_svg(const uint8_t *bytes, size_t size);

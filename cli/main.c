@@ -6,13 +6,22 @@
 
 #include <stdio.h>
 
+enum {
+    IMAGE = GROUP_PICTURE | GROUP_SIZE | GROUP_METHOD,
+    OUTPUT_AND_RUN = GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN,
+};
+
 static const verb verbs[] = {
+    {"carve", "PICTURE", "make a printable plate of a picture",
+     IMAGE | GROUP_PLATE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".3mf.stl.svg.dxf.png", run_carve},
+    {"adapt", "PICTURE", "make the picture printable, and stop there",
+     IMAGE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
+    {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
+     GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
     {"check", "MODEL", "is a model (STL, 3MF) a solid: closed, manifold, outward, nowhere through itself",
      GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
-    {"place", "PICTURE", "put a picture on the printer's working grid, nothing else changed",
-     GROUP_PICTURE | GROUP_SIZE | GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN, ".png", run_place},
-    {"sample", "NAME", "draw one of the built-in pictures",
-     GROUP_SAMPLE | GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN, ".png", run_sample},
+    {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | OUTPUT_AND_RUN, ".png",
+     run_sample},
     {"list", "KIND", "list what is built in: samples", GROUP_RUN, "", run_list},
 };
 
@@ -43,7 +52,7 @@ static int print_help(void)
 
 static int print_verb_help(const verb *v)
 {
-    printf("jali %s%s%s%s%s: %s\n\n", v->name, v->operand ? " " : "", v->operand ? v->operand : "",
+    printf("jali %s%s%s%s%.4s: %s\n\n", v->name, v->operand ? " " : "", v->operand ? v->operand : "",
            *v->suffixes ? " -o NAME" : "", v->suffixes, v->what);
     print_options(v);
     return EXIT_DONE;

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef enum value_kind { FLAG, NUMBER, WHOLE, TEXT, OUTPUT, THRESHOLD, CROP, ROTATE, PROGRESS } value_kind;
+typedef enum value_kind { FLAG, FLAG_OFF, NUMBER, WHOLE, TEXT, OUTPUT, THRESHOLD, CROP, KERNELS, ROTATE, PROGRESS } value_kind;
 
 typedef struct option {
     const char *name, *value; // value: its name in the help; NULL = a flag
@@ -35,9 +35,9 @@ static const option options[] = {
 
     {"threshold", "0..255|auto|local", THRESHOLD, GROUP_PICTURE, 0, 0, 255, 0,
      "grey level from which a pixel is white; local follows uneven light (auto)"},
-    {"window", "PX", WHOLE, GROUP_PICTURE, FIELD(threshold.window_px), 3, 4001, "px",
+    {"window", "PX", WHOLE, GROUP_PICTURE, FIELD(make.threshold.window_px), 3, 4001, "px",
      "side of the neighbourhood of --threshold local (1/16 of the shorter side)"},
-    {"contrast", "SHARE", NUMBER, GROUP_PICTURE, FIELD(threshold.contrast), 0, 1, 0,
+    {"contrast", "SHARE", NUMBER, GROUP_PICTURE, FIELD(make.threshold.contrast), 0, 1, 0,
      "of --threshold local: more counts only stronger edges (0.2)"},
     {"invert", NULL, FLAG, GROUP_PICTURE, FIELD(read.invert), 0, 0, 0, "swap black and white"},
     {"mirror", NULL, FLAG, GROUP_PICTURE, FIELD(read.mirror), 0, 0, 0, "swap left and right"},
@@ -45,21 +45,38 @@ static const option options[] = {
     {"crop", "L,T,W,H", CROP, GROUP_PICTURE, 0, 0, 0, 0,
      "keep this part, in pixels from the upper left corner"},
 
-    {"width", "MM", NUMBER, GROUP_SIZE, FIELD(place.width_mm), 0.01, 10000, "mm",
+    {"width", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.width_mm), 0.01, 10000, "mm",
      "width of the picture (70)"},
-    {"height", "MM", NUMBER, GROUP_SIZE, FIELD(place.height_mm), 0.01, 10000, "mm",
+    {"height", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.height_mm), 0.01, 10000, "mm",
      "height of the picture; one size gives the other"},
-    {"frame", "MM", NUMBER, GROUP_SIZE, FIELD(place.frame_mm), 0, 1000, "mm", "width of the solid frame (0)"},
-    {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_e_mm), 0, 100, "mm",
+    {"frame", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.frame_mm), 0, 1000, "mm",
+     "width of the solid frame, 0 = none (2)"},
+    {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(make.optimise.phi_e_mm), 0, 100, "mm",
      "how much wider a solid bar prints than drawn (0.1)"},
-    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_s_mm), 0.001, 100, "mm",
+    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(make.optimise.phi_s_mm), 0.001, 100, "mm",
      "narrowest solid that prints (0.3)"},
-    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(place.phi_v_mm), 0.001, 100, "mm",
+    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(make.optimise.phi_v_mm), 0.001, 100, "mm",
      "narrowest void that prints (0.5)"},
-    {"pixel", "MM", NUMBER, GROUP_SIZE, FIELD(place.pixel_mm), 0.0001, 100, "mm",
+    {"pixel", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.pixel_mm), 0.0001, 100, "mm",
      "working pixel (the smaller of phi-s and phi-v, over 8)"},
-    {"paper", NULL, FLAG, GROUP_SIZE, FIELD(place.paper), 0, 0, 0,
-     "the paper's grid: one working pixel an input pixel"},
+    {"paper", NULL, FLAG, GROUP_SIZE, FIELD(make.optimise.paper), 0, 0, 0,
+     "the paper's own method: input pixels, square elements, its roundings"},
+
+    {"epsilon", "MM", NUMBER, GROUP_METHOD, FIELD(make.optimise.epsilon_mm), 0, 1000, "mm",
+     "length above which a thin tip counts as a feature (4)"},
+    {"kernels", "C,W,B", KERNELS, GROUP_METHOD, 0, 0, 0, 0,
+     "set the elements' sizes in working pixels outright"},
+    {"no-predict", NULL, FLAG_OFF, GROUP_METHOD, FIELD(make.predict), 0, 0, 0,
+     "do not say what the printer makes of it"},
+
+    {"thickness", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.thickness_mm), 0.01, 1000, "mm",
+     "thickness of the plate (4)"},
+    {"corner", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.corner_radius_mm), 0, 1000, "mm",
+     "radius of the plate's corners (0)"},
+    {"hole", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.hole_diameter_mm), 0, 100, "mm",
+     "diameter of a hole to hang it by (0: none)"},
+    {"deviation", "MM", NUMBER, GROUP_PLATE, FIELD(make.trace.deviation_mm), 0.0001, 10, "mm",
+     "how far outlines may leave the smooth curve (0.01)"},
 
     {"size", "PX", WHOLE, GROUP_SAMPLE, FIELD(size_px), 16, 32768, "px", "side of the picture (1000)"},
     {"skip-intersections", NULL, FLAG, GROUP_CHECK, FIELD(skip_intersections), 0, 0, 0,
@@ -84,12 +101,11 @@ settings default_settings(void)
 {
     settings set = {
         .read = jali_read_defaults(),
-        .threshold = jali_threshold_defaults(),
-        .place = jali_place_defaults(),
+        .make = jali_defaults(),
         .context = jali_context_defaults(),
         .size_px = 1000,
     };
-    set.place.width_mm = 0; // 70 stands unless a height is given
+    set.make.place.width_mm = 0; // 70 stands unless a height is given
     return set;
 }
 
@@ -179,31 +195,42 @@ static bool parse_threshold(const option *o, const char *text, settings *set, ch
 {
     double level = 0;
     if (strcmp(text, "auto") == 0)
-        set->threshold.method = JALI_THRESHOLD_AUTO;
+        set->make.threshold.method = JALI_THRESHOLD_AUTO;
     else if (strcmp(text, "local") == 0)
-        set->threshold.method = JALI_THRESHOLD_LOCAL;
+        set->make.threshold.method = JALI_THRESHOLD_LOCAL;
     else {
         if (!parse_number(o, text, &level, sentence)) return false;
-        set->threshold.method = JALI_THRESHOLD_FIXED;
-        set->threshold.level = (int32_t)level;
+        set->make.threshold.method = JALI_THRESHOLD_FIXED;
+        set->make.threshold.level = (int32_t)level;
+    }
+    return true;
+}
+
+// "1,2,3": whole numbers from `least` on, all of them.
+static bool parse_list(const char *text, int32_t count, const int32_t *least, int32_t *number)
+{
+    for (int32_t i = 0; i < count; i++) {
+        char *end;
+        errno = 0;
+        long one = strtol(text, &end, 10);
+        if (end == text || errno || one < least[i] || one > 1 << 20) return false;
+        if (*end != (i + 1 < count ? ',' : 0)) return false;
+        number[i] = (int32_t)one;
+        text = end + 1;
     }
     return true;
 }
 
 static bool parse_crop(const char *text, settings *set, char *sentence)
 {
-    const char *at = text;
-    for (int32_t i = 0; i < 4; i++) {
-        char *end;
-        errno = 0;
-        long number = strtol(at, &end, 10);
-        bool last = i == 3;
-        if (end == at || errno || number < (i >= 2) || number > 1 << 20 || *end != (last ? 0 : ','))
-            return wrong(sentence, "--crop takes left,top,width,height in pixels, not \"%.60s\"", text);
-        set->read.crop_px[i] = (int32_t)number;
-        at = end + 1;
-    }
-    return true;
+    if (parse_list(text, 4, (int32_t[]){0, 0, 1, 1}, set->read.crop_px)) return true;
+    return wrong(sentence, "--crop takes left,top,width,height in pixels, not \"%.60s\"", text);
+}
+
+static bool parse_kernels(const char *text, settings *set, char *sentence)
+{
+    if (parse_list(text, 3, (int32_t[]){1, 1, 1}, set->make.optimise.kernels_px)) return true;
+    return wrong(sentence, "--kernels takes omega_c,omega_w,omega_b in pixels, not \"%.60s\"", text);
 }
 
 static bool parse_rotate(const option *o, const char *text, settings *set, char *sentence)
@@ -242,9 +269,11 @@ static bool set_option(const option *o, const char *text, settings *set, char *s
     if (text && *text == 0) return wrong(sentence, "--%s needs a value (%s)", o->name, o->value);
     switch (o->kind) {
     case FLAG: *(bool *)field = true; return true;
+    case FLAG_OFF: *(bool *)field = false; return true;
     case TEXT: *(const char **)field = text; return true;
     case OUTPUT: return add_output(text, set, sentence);
     case THRESHOLD: return parse_threshold(o, text, set, sentence);
+    case KERNELS: return parse_kernels(text, set, sentence);
     case CROP: return parse_crop(text, set, sentence);
     case ROTATE: return parse_rotate(o, text, set, sentence);
     case PROGRESS: return parse_progress(text, set, sentence);
@@ -276,8 +305,8 @@ static bool parse_one(const verb *v, int argc, char **argv, int *i, settings *se
     const option *o = find_option(word, length);
     if (!o) return unknown_option(v, word, length, sentence);
     if (!(o->group & v->groups)) return wrong(sentence, "--%s is not an option of jali %s", o->name, v->name);
-    if (o->kind == FLAG && equals) return wrong(sentence, "--%s takes no value", o->name);
-    if (o->kind != FLAG) {
+    if (!o->value && equals) return wrong(sentence, "--%s takes no value", o->name);
+    if (o->value) {
         if (!equals && *i + 1 >= argc) return wrong(sentence, "--%s needs a value (%s)", o->name, o->value);
         text = equals ? equals + 1 : argv[++*i];
     }
@@ -308,9 +337,9 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
     if (set->help) return true;
     if (v->operand && !set->operand) return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
     if (*v->suffixes && set->output_count == 0)
-        return wrong(sentence, "jali %s needs an output file: -o NAME%s", v->name, v->suffixes);
-    if (set->place.width_mm == 0 && set->place.height_mm == 0)
-        set->place.width_mm = jali_place_defaults().width_mm;
+        return wrong(sentence, "jali %s needs an output file: -o NAME%.4s", v->name, v->suffixes);
+    if (set->make.place.width_mm == 0 && set->make.place.height_mm == 0)
+        set->make.place.width_mm = jali_place_defaults().width_mm;
     set->context.max_memory_bytes = (uint64_t)(set->max_memory_mb * 1e6);
     return true;
 }

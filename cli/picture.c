@@ -11,8 +11,9 @@ static const size_t max_svg_bytes = (size_t)1 << 28;
 static int32_t svg_longer_px(const settings *set)
 {
     enum { LEAST = 256, MOST = 16384 };
-    const jali_place_options *place = &set->place;
-    double pixel_mm = place->pixel_mm > 0 ? place->pixel_mm : MIN(place->phi_s_mm, place->phi_v_mm) / 8;
+    const jali_place_options *place = &set->make.place;
+    const jali_optimise_options *printer = &set->make.optimise;
+    double pixel_mm = place->pixel_mm > 0 ? place->pixel_mm : MIN(printer->phi_s_mm, printer->phi_v_mm) / 8;
     double px = ceil(MAX(place->width_mm, place->height_mm) / pixel_mm);
     return (int32_t)MIN(MAX(px, LEAST), MOST);
 }
@@ -35,7 +36,7 @@ static jali_status decode(jali_context *ctx, const settings *set, const char *na
     return jali_read_bytes(ctx, file->data, file->size, name, &set->read, picture);
 }
 
-jali_status load_picture(jali_context *ctx, const settings *set, jali_picture *picture, int32_t *threshold)
+jali_status load_picture(jali_context *ctx, const settings *set, jali_picture *picture)
 {
     jali_status status;
     jali_bytes file = {0};
@@ -43,8 +44,6 @@ jali_status load_picture(jali_context *ctx, const settings *set, jali_picture *p
     const char *name = strcmp(set->operand, "-") == 0 ? "stdin" : set->operand;
     TRY(file_read(ctx, set->operand, (size_t)3 << 29, &file));
     TRY(decode(ctx, set, name, &file, picture));
-    jali_bytes_free(ctx, &file);
-    TRY(jali_threshold(ctx, picture, &set->threshold, threshold));
 done:
     jali_bytes_free(ctx, &file);
     if (status != JALI_OK) jali_picture_free(ctx, picture);
@@ -58,8 +57,14 @@ jali_status run_place(jali_context *ctx, const settings *set)
     jali_chart chart;
     jali_bitmap drawing = {0};
     int32_t threshold;
-    TRY(load_picture(ctx, set, &picture, &threshold));
-    TRY(jali_place(ctx, &picture, threshold, &set->place, &chart, &drawing));
+    jali_place_options place = set->make.place;
+    place.phi_e_mm = set->make.optimise.phi_e_mm;
+    place.phi_s_mm = set->make.optimise.phi_s_mm;
+    place.phi_v_mm = set->make.optimise.phi_v_mm;
+    place.paper = set->make.optimise.paper;
+    TRY(load_picture(ctx, set, &picture));
+    TRY(jali_threshold(ctx, &picture, &set->make.threshold, &threshold));
+    TRY(jali_place(ctx, &picture, threshold, &place, &chart, &drawing));
     TRY(write_bitmaps(ctx, set, &drawing, jali_chart_pixel_mm(&chart)));
     say(set, "%d x %d px at threshold %d, on a grid of %d x %d px of %.4g mm", picture.width_px,
         picture.height_px, threshold, chart.width_px, chart.height_px, jali_chart_pixel_mm(&chart));

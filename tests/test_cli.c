@@ -159,6 +159,67 @@ TEST(bad_pictures_are_rejected)
     CHECK(access("a.png", F_OK) != 0);
 }
 
+static void write_sample(void)
+{
+    if (access("rings.png", F_OK) != 0) run("sample rings -o rings.png --size 300", 0, "");
+}
+
+TEST(a_picture_is_carved)
+{
+    write_sample();
+    run("carve rings.png -o rings.3mf -o rings.stl -o rings.svg -o rings.dxf -o mask.png --json rings.json "
+        "--report rings.html --width 30 --hole 3 --corner 2",
+        0, "closed and manifold");
+    run("check rings.3mf", 0, "");
+    CHECK(strstr(printed, "1 piece") && strstr(printed, "is a solid"));
+    run("check rings.stl", 0, "");
+    static char text[1 << 22];
+    FILE *html = fopen("rings.html", "rb");
+    CHECK(html && fread(text, 1, sizeof text - 1, html) > 100000 && fclose(html) == 0);
+    CHECK(strstr(text, "<h1>rings.png</h1>") && strstr(text, "A closed, manifold solid: kept"));
+    CHECK(strstr(text, "http") == NULL); // nothing from outside
+    char json[TEXT_BYTES];
+    read_text("rings.json", json);
+    CHECK(strstr(json, "\"one_piece\": true") && strstr(json, "\"self_intersections\": 0"));
+}
+
+TEST(a_picture_is_adapted)
+{
+    write_sample();
+    run("adapt rings.png -o adapted.png --json - --width 30 --quiet", 0, "");
+    CHECK(strstr(printed, "\"mesh\": null") && strstr(printed, "\"printable\": true"));
+    run("adapt rings.png -o other.png --thickness 3", 2, "not an option of jali adapt");
+    run("adapt rings.png -o other.stl", 2, "does not write this type; it writes .png");
+}
+
+// The same bytes for any number of threads, 3MF and all.
+TEST(threads_do_not_change_a_file)
+{
+    write_sample();
+    for (int32_t threads = 1; threads <= 3; threads++) {
+        char arguments[200];
+        snprintf(arguments, sizeof arguments, "carve rings.png -o t%d.3mf -o t%d.png --width 25 --threads %d",
+                 threads, threads, threads);
+        run(arguments, 0, "");
+    }
+    CHECK_INT(system("cmp t1.3mf t2.3mf && cmp t1.3mf t3.3mf && cmp t1.png t2.png && cmp t1.png t3.png"), 0);
+}
+
+TEST(a_picture_that_cannot_be_carved_is_a_sentence)
+{
+    write_sample();
+    write_text("old.3mf", "precious", 8);
+    run("carve rings.png -o old.3mf --force-overwrite --width 0.4", 1, "narrowest feature");
+    run("carve rings.png -o old.3mf --force-overwrite --timeout 0.001", 5, "time limit");
+    run("carve rings.png -o old.3mf", 2, "--force-overwrite replaces it");
+    run("carve rings.png -o old.3mf -o full.stl --force-overwrite --frame 0 --hole 3", 2, "frame");
+    run("carve rings.png -o a.obj", 2, "it writes .3mf.stl.svg.dxf.png");
+    run("carve rings.png -o a.3mf --kernels 1,2", 2, "omega_c,omega_w,omega_b");
+    char kept[TEXT_BYTES];
+    read_text("old.3mf", kept);
+    assert_string_equal(kept, "precious");
+}
+
 // A tetrahedron as text, without its last face when it shall be open.
 static void write_tetrahedron(const char *name, bool closed)
 {
@@ -273,6 +334,10 @@ int main(void)
         cmocka_unit_test(usage_is_checked_before_anything_is_done),
         cmocka_unit_test(numbers_are_numbers_in_their_range),
         cmocka_unit_test(bad_pictures_are_rejected),
+        cmocka_unit_test(a_picture_is_carved),
+        cmocka_unit_test(a_picture_is_adapted),
+        cmocka_unit_test(threads_do_not_change_a_file),
+        cmocka_unit_test(a_picture_that_cannot_be_carved_is_a_sentence),
         cmocka_unit_test(models_are_checked),
         cmocka_unit_test(earlier_output_stays_untouched),
         cmocka_unit_test(a_full_disk_is_a_sentence),

@@ -1,0 +1,109 @@
+// The figures of a run as JSON, version 1. Keys are kept; new ones may come.
+#include "cli.h"
+#include "base/bytes.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+
+static json_t *types_of(const int32_t count[JALI_TYPES])
+{
+    return json_pack("{s:i, s:i, s:i}", "A", count[JALI_TYPE_A], "B", count[JALI_TYPE_B], "C",
+                     count[JALI_TYPE_C]);
+}
+
+static json_t *round_of(const jali_round *r)
+{
+    return json_pack("{s:o, s:o, s:i}", "white", types_of(r->white), "black", types_of(r->black), "conflicts",
+                     r->conflicts);
+}
+
+static json_t *adapt_of(const jali_optimised *o)
+{
+    json_t *rounds = json_array();
+    for (int32_t i = 0; i < o->round_count; i++) json_array_append_new(rounds, round_of(&o->round[i]));
+    return json_pack("{s:i, s:b, s:o, s:{s:o, s:o}}", "iterations", o->round_count, "cycled", o->cycled,
+                     "rounds", rounds, "residual", "white", types_of(o->residual.white), "black",
+                     types_of(o->residual.black));
+}
+
+static json_t *print_of(const jali_prediction *p, bool recall)
+{
+    json_t *print = json_pack("{s:f, s:i}", "error_rate", p->error_rate, "pieces", p->pieces);
+    if (recall) {
+        json_object_set_new(print, "recall_white", json_real(p->recall_white));
+        json_object_set_new(print, "recall_black", json_real(p->recall_black));
+    }
+    return print;
+}
+
+static json_t *predict_of(const settings *set, const jali_result *r)
+{
+    bool recall = set->make.recall;
+    if (!set->make.predict) return json_null();
+    return json_pack("{s:f, s:f, s:f, s:o, s:o, s:o}", "error_rate_input", r->input_print.error_rate,
+                     "error_rate_connected", r->connected_print.error_rate, "error_rate_result",
+                     r->result_print.error_rate, "input", print_of(&r->input_print, recall), "connected",
+                     print_of(&r->connected_print, recall), "result", print_of(&r->result_print, recall));
+}
+
+static json_t *mesh_of(const settings *set, const jali_result *r)
+{
+    if (!set->make.solid) return json_null();
+    return json_pack("{s:i, s:i, s:i, s:b, s:b, s:I, s:f}", "vertices", r->mesh.vertex_count, "triangles",
+                     r->mesh.triangle_count, "components", r->check.pieces, "watertight", r->check.closed,
+                     "manifold", r->check.manifold, "self_intersections",
+                     (json_int_t)r->check.intersections.count, "volume_mm3", r->check.volume_mm3);
+}
+
+static json_t *seconds_of(const jali_result *r)
+{
+    json_t *seconds = json_object();
+    double total = 0;
+    for (int32_t i = 0; i < JALI_STAGES; i++) {
+        json_object_set_new(seconds, jali_stage_name(i), json_real(r->seconds[i]));
+        total += r->seconds[i];
+    }
+    json_object_set_new(seconds, "total", json_real(total));
+    return seconds;
+}
+
+static json_t *promises_of(const settings *set, const jali_result *r)
+{
+    return json_pack("{s:b, s:b, s:o}", "one_piece", r->one_piece, "printable", r->printable, "closed",
+                     set->make.solid ? json_boolean(r->closed) : json_null());
+}
+
+// A part that could not be made leaves the whole unmade: jansson's "o" of NULL gives NULL.
+static json_t *figures_of(jali_context *ctx, const settings *set, const jali_picture *picture,
+                          const jali_result *r)
+{
+    const jali_optimise_options *printer = &set->make.optimise;
+    double pixel_mm = jali_chart_pixel_mm(&r->chart);
+    int32_t columns = r->chart.width_px - 2 * r->chart.margin_px,
+            rows = r->chart.height_px - 2 * r->chart.margin_px;
+    const int32_t *kernel = r->optimised.kernels_px;
+    return json_pack(
+        "{s:i, s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:{s:f, s:f, s:f}, s:{s:i, s:i, s:i},"
+        " s:{s:i, s:I, s:i}, s:o, s:o, s:o, s:o, s:o, s:f}",
+        "version", 1, "input", "width_px", picture->width_px, "height_px", picture->height_px,
+        "white_components", r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm,
+        rows * pixel_mm, "grid_px", columns, rows, "pixel_mm", pixel_mm, "printer", "phi_e_mm",
+        printer->phi_e_mm, "phi_s_mm", printer->phi_s_mm, "phi_v_mm", printer->phi_v_mm, "kernels_px",
+        "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2], "connect", "bridges",
+        r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels, "pieces_dropped",
+        r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict", predict_of(set, r), "mesh",
+        mesh_of(set, r), "promises", promises_of(set, r), "seconds", seconds_of(r), "peak_memory_mb",
+        (double)jali_peak_memory_bytes(ctx) / 1e6);
+}
+
+jali_status figures_json(jali_context *ctx, const settings *set, const jali_picture *picture,
+                         const jali_result *result, jali_bytes *json)
+{
+    json_t *figures = figures_of(ctx, set, picture, result);
+    char *text = figures ? json_dumps(figures, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    jali_status status =
+        text ? bytes_print(ctx, json, "%s\n", text) : fail(ctx, JALI_NO_MEMORY, "no memory for the figures");
+    free(text);
+    json_decref(figures);
+    return status;
+}
