@@ -10,7 +10,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef enum value_kind { FLAG, FLAG_OFF, NUMBER, WHOLE, TEXT, OUTPUT, THRESHOLD, CROP, KERNELS, ROTATE, PROGRESS } value_kind;
+typedef enum value_kind {
+    FLAG,
+    FLAG_OFF,
+    NUMBER,
+    WHOLE,
+    TEXT,
+    OUTPUT,
+    THRESHOLD,
+    CROP,
+    KERNELS,
+    ROTATE,
+    PROGRESS
+} value_kind;
 
 typedef struct option {
     const char *name, *value; // value: its name in the help; NULL = a flag
