@@ -24,7 +24,7 @@ static const double WIDTH_TOLERANCE_PX = 0.01;
 jali_optimise_options jali_optimise_defaults(void)
 {
     return (jali_optimise_options){.phi_e_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .epsilon_mm = 4,
-                                   .most_rounds = 8, .axis_worth = jali_adapt_defaults().axis_worth};
+                                   .most_rounds = 8, .detail = 1};
 }
 
 void jali_optimised_free(jali_context *ctx, jali_optimised *result)
@@ -305,7 +305,8 @@ static jali_status prepare(jali_context *ctx, optimising *o)
     o->widths.epsilon_px = (int32_t)floor(o->opt.epsilon_mm / jali_chart_pixel_mm(o->chart));
     o->widths.isolated_matters = !o->opt.paper;
     o->widths.outside_solid = o->chart->outside_solid;
-    o->widths.axis_worth = o->opt.axis_worth;
+    o->widths.axis_worth_white *= o->opt.detail;
+    o->widths.axis_worth_black *= o->opt.detail;
 done:
     return status;
 }

@@ -20,9 +20,10 @@ typedef struct jali_adapt_options {
     bool outside_solid;       // what surrounds the picture
     int32_t growth_px;        // omega_c: what the printer adds to a solid's width, plus 1; odd (default 1)
     // jali_adapt_print alone:
-    double axis_worth;        // what a lost pixel of a detail's axis weighs, as a share of the narrowest width:
-                              // 0 = only the count of wrong pixels matters; default 0.42. More keeps more fine
-                              // detail and draws it wider, at the price of wrong pixels
+    double axis_worth_white;  // what a lost pixel of a detail's axis weighs, as a share of the narrowest width, 0 to
+    double axis_worth_black;  // 100: 0 = only the count of wrong pixels matters; more keeps more fine detail of that
+                              // tone and draws it wider, at the price of wrong pixels. Default 0.36 and 0.385: over
+                              // 24 runs both tones then keep the same share (docs/adapt.md)
 } jali_adapt_options;
 
 JALI_API jali_adapt_options jali_adapt_defaults(void);
@@ -65,7 +66,7 @@ typedef struct jali_stamp_report {
 /// The default in place of rounds: a print that keeps to the widths everywhere and differs least from the
 /// drawing. Begins with the opening and closing; then at each lost detail a disc of its tone is set, with all
 /// that this closes or cuts off around it, when that lowers
-///     wrong pixels + axis_worth * width * lost pixels of the details' axes.
+///     wrong pixels + axis_worth * width * lost pixels of the details' axes, tone by tone.
 /// The sum is a whole number and falls with each disc that stays, so the search ends.
 ///   in     drawing   what the print should look like, margin included
 ///   out    print     a new bitmap: how the print comes out, growth included (jali_compensate gives the mask)

@@ -18,7 +18,8 @@ typedef struct jali_optimise_options {
     bool paper;             // the paper's method: square elements, Table 1's kernels, its rounds
     int32_t kernels_px[3];  // omega_c, omega_w, omega_b; 0 (default) = from the three figures above
     int32_t most_rounds;    // of Algorithm 3, >= 1 (8); recall gains nothing after 6 to 8
-    double axis_worth;      // see jali_adapt_options (0.42)
+    double detail;          // weight of fine detail against wrong pixels, 0 to 100; times jali_adapt_options'
+                            // axis_worth of both tones (1)
     bool details;           // keep the details and conflicts for overlays and counts (costs a third more time)
 } jali_optimise_options;
 

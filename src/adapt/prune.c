@@ -53,7 +53,7 @@ static void weigh_pieces(const jali_bitmap *drawing, const jali_bitmap *axis, in
     for (int32_t y = 0; y < t->c.height_px; y++)
         for (int32_t i = t->c.first[y]; i < t->c.first[y + 1]; i++) {
             int32_t x0 = t->c.span[i][0], x1 = t->c.span[i][1];
-            int64_t saved = 2 * count_run(drawing, y, x0, x1) - (x1 - x0) + worth * count_run(axis, y, x0, x1);
+            int64_t saved = WRONG_UNITS * (2 * count_run(drawing, y, x0, x1) - (x1 - x0)) + worth * count_run(axis, y, x0, x1);
             t->value[t->c.label[i]] += PRIZE * saved;
         }
 }
@@ -66,7 +66,7 @@ static void weigh_bridges(const jali_bitmap *drawing, const jali_bitmap *print, 
         line_walk walk = walk_line(bridges->bridge[i].from, bridges->bridge[i].to);
         while (walk_on(&walk))
             if (!jali_bitmap_get(print, walk.x, walk.y))
-                t->cost[i] += jali_bitmap_get(drawing, walk.x, walk.y) ? -width_px : width_px;
+                t->cost[i] += WRONG_UNITS * (jali_bitmap_get(drawing, walk.x, walk.y) ? -width_px : width_px);
         t->cost[i] = MAX(t->cost[i], 0);
     }
 }
@@ -120,7 +120,7 @@ jali_status jali_adapt_prune(jali_context *ctx, const jali_bitmap *drawing, cons
     TRY(medial_axis(ctx, drawing, true, true, solid.size, &axis));
     TRY(build_tree(ctx, print, bridges, &t));
     TRY(component_areas(ctx, &t.c, &area));
-    weigh_pieces(drawing, &axis, axis_weight_px(opt, &solid, &hollow), &t);
+    weigh_pieces(drawing, &axis, axis_worth_units(opt, true, &solid, &hollow), &t);
     weigh_bridges(drawing, print, bridges, solid.size, &t);
     prune_tree(bridges, largest_piece(&t.c, area), &t);
     for (int32_t i = 0; i < t.c.count; i++) *dropped += !t.kept[i];

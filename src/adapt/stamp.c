@@ -20,7 +20,7 @@
 #include "adapt/window.h"
 #include "base/base.h"
 
-enum { BAND_ROWS = 256, PAD_PX = 64, PASSES = 6, MAX_REACH_PX = 63 };
+enum { BAND_ROWS = 256, PAD_PX = 64, PASSES = 6, MAX_REACH_PX = 63, WRONG_ROUNDS = 1 };
 
 static const double PASS_GAIN[PASSES] = {0.24, 0.08, 0, 0, 0, 0}; // of a disc's area
 
@@ -32,12 +32,12 @@ typedef struct tone {
     window_element fit;
     uint64_t row[WINDOW_MAX_ELEMENT]; // the disc, row by row, from its left edge
     int32_t area;
+    int64_t worth;         // of a lost pixel of the axis; a wrong pixel counts WRONG_UNITS
 } tone;
 
 typedef struct stamping {
     jali_bitmap drawing, print; // padded by PAD_PX on each side
     tone side[2];               // [white]
-    int64_t worth;              // wrong pixels that a lost pixel of an axis counts for
     int32_t rows;               // of a window
     int32_t pass, turn, band_count;
     jali_stamp_report *band;    // [band_count]
@@ -62,7 +62,7 @@ static int64_t change_in_sum(const stamping *s, const window *change, int32_t x0
     int64_t found = count_window(change, &w, s->rows);
     window_read(&s->side[0].axis, x0, y0, s->rows, &w);
     int64_t lost = count_window(change, &w, s->rows);
-    int64_t sum = all - 2 * right + s->worth * (lost - found);
+    int64_t sum = WRONG_UNITS * (all - 2 * right) + s->side[0].worth * lost - s->side[1].worth * found;
     return white ? sum : -sum;
 }
 
@@ -88,7 +88,7 @@ VECTORISED static int64_t change_by_disc(const stamping *s, int32_t x, int32_t y
         found += __builtin_popcountll(change & bits_from(&s->side[1].axis, left, top + k));
         lost += __builtin_popcountll(change & bits_from(&s->side[0].axis, left, top + k));
     }
-    int64_t sum = all - 2 * right + s->worth * (lost - found);
+    int64_t sum = WRONG_UNITS * (all - 2 * right) + s->side[0].worth * lost - s->side[1].worth * found;
     return white ? sum : -sum;
 }
 
@@ -118,7 +118,7 @@ static void disc_and_after(const stamping *s, int32_t x0, int32_t y0, bool white
 // is not: what others do around it seldom changes that, and it would be asked again and again.
 static bool try_disc(stamping *s, jali_stamp_report *report, int32_t x, int32_t y, bool white)
 {
-    int64_t gain = (int64_t)(PASS_GAIN[s->pass] * s->side[white].area);
+    int64_t gain = (int64_t)(PASS_GAIN[s->pass] * WRONG_UNITS * s->side[white].area);
     report->tried++;
     int64_t bound = change_by_disc(s, x, y, white);
     if (bound >= -gain) return bound < 0;
@@ -155,11 +155,22 @@ static void stamp_band(void *shared, int32_t index)
             }
 }
 
-static jali_status search(jali_context *ctx, stamping *s, jali_stamp_report *total)
+// No places beyond the picture: a window around them would leave the padded bitmap.
+static void clear_pad(jali_bitmap *axis)
+{
+    for (int32_t y = 0; y < axis->height_px; y++) {
+        bool beyond = y < PAD_PX || y >= axis->height_px - PAD_PX;
+        paint_run(axis, y, 0, beyond ? axis->width_px : PAD_PX, false);
+        paint_run(axis, y, axis->width_px - PAD_PX, axis->width_px, false);
+    }
+}
+
+// Passes over the open places of both tones until one keeps nothing.
+static jali_status run_passes(jali_context *ctx, stamping *s, int32_t first_pass, jali_stamp_report *total)
 {
     jali_status status = JALI_OK;
     int64_t kept = -1;
-    for (s->pass = 0; s->pass < PASSES; s->pass++) {
+    for (s->pass = first_pass; s->pass < PASSES; s->pass++) {
         TRY(step(ctx, "adapt", (double)s->pass / PASSES));
         for (s->turn = 0; s->turn < 2; s->turn++)
             parallel(ctx, (s->band_count + 1 - s->turn) / 2, stamp_band, s);
@@ -176,14 +187,32 @@ done:
     return status;
 }
 
-// No places beyond the picture: a window around them would leave the padded bitmap.
-static void clear_pad(jali_bitmap *axis)
+// Open the ridges of what is still wrong, for discs that are worth their pixels alone.
+static jali_status open_wrong_places(jali_context *ctx, stamping *s, jali_bitmap *scratch)
 {
-    for (int32_t y = 0; y < axis->height_px; y++) {
-        bool beyond = y < PAD_PX || y >= axis->height_px - PAD_PX;
-        paint_run(axis, y, 0, beyond ? axis->width_px : PAD_PX, false);
-        paint_run(axis, y, axis->width_px - PAD_PX, axis->width_px, false);
+    jali_status status = JALI_OK;
+    for (int32_t white = 0; white < 2; white++) {
+        tone *t = &s->side[white];
+        jali_bitmap_free(ctx, &t->open);
+        if (white) combine(ctx, RULE_AND_NOT, &s->drawing, &s->print, scratch);
+        else combine(ctx, RULE_AND_NOT, &s->print, &s->drawing, scratch);
+        TRY(medial_axis(ctx, scratch, true, false, t->disc.size, &t->open));
+        clear_pad(&t->open);
     }
+done:
+    return status;
+}
+
+static jali_status search(jali_context *ctx, stamping *s, jali_bitmap *scratch, jali_stamp_report *total)
+{
+    jali_status status;
+    TRY(run_passes(ctx, s, 0, total));
+    for (int32_t round = 0; round < WRONG_ROUNDS; round++) {
+        TRY(open_wrong_places(ctx, s, scratch));
+        TRY(run_passes(ctx, s, 1, total));
+    }
+done:
+    return status;
 }
 
 // The disc's rows as bits from its left edge on, and its area.
@@ -230,15 +259,17 @@ jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, cons
     stamping s = {0};
     *print = (jali_bitmap){0};
     *report = (jali_stamp_report){0};
-    if (!(opt->axis_worth >= 0 && opt->axis_worth <= 100))
-        return fail(ctx, JALI_BAD_VALUE, "axis_worth is %g; 0 to 100 is accepted", opt->axis_worth);
+    if (!(opt->axis_worth_white >= 0 && opt->axis_worth_white <= 100 && opt->axis_worth_black >= 0 &&
+          opt->axis_worth_black <= 100))
+        return fail(ctx, JALI_BAD_VALUE, "axis_worth is %g for white, %g for black; 0 to 100 is accepted",
+                    opt->axis_worth_white, opt->axis_worth_black);
     TRY(printed_elements(ctx, opt, &s.side[1].disc, &s.side[0].disc));
     TRY(pad(ctx, drawing, opt->outside_solid, &s.drawing));
     TRY(pad(ctx, drawing, opt->outside_solid, &scratch));
     TRY(prepare_tone(ctx, &s, true, &scratch));
     TRY(prepare_tone(ctx, &s, false, &scratch));
     int32_t solid = s.side[1].disc.size, hollow = s.side[0].disc.size;
-    s.worth = axis_weight_px(opt, &s.side[1].disc, &s.side[0].disc);
+    for (int32_t white = 0; white < 2; white++) s.side[white].worth = axis_worth_units(opt, white, &s.side[1].disc, &s.side[0].disc);
     // Half a disc, and twice the other disc beyond it, decide what a disc changes.
     int32_t reach = MAX(solid / 2 + 2 * hollow, hollow / 2 + 2 * solid) + 1;
     s.rows = 2 * ((reach + 3) / 4 * 4);
@@ -247,7 +278,7 @@ jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, cons
     TRY(jali_bitmap_copy(ctx, &s.drawing, &s.print));
     TRY(open_by(ctx, &s.print, &s.side[1].disc, true, &scratch, &s.print));
     TRY(close_by(ctx, &s.print, &s.side[0].disc, true, &scratch, &s.print));
-    if (reach <= MAX_REACH_PX) TRY(search(ctx, &s, report));
+    if (reach <= MAX_REACH_PX) TRY(search(ctx, &s, &scratch, report));
     TRY(jali_bitmap_create(ctx, drawing->width_px, drawing->height_px, print));
     cut_out(&s.print, PAD_PX, PAD_PX, print);
 done:

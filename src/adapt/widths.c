@@ -12,7 +12,8 @@
 jali_adapt_options jali_adapt_defaults(void)
 {
     return (jali_adapt_options){.shape = JALI_SHAPE_DISC, .solid_px = 12, .void_px = 20, .epsilon_px = 40,
-                                .isolated_matters = true, .outside_solid = true, .growth_px = 1, .axis_worth = 0.42};
+                                .isolated_matters = true, .outside_solid = true, .growth_px = 1,
+                                .axis_worth_white = 0.36, .axis_worth_black = 0.385};
 }
 
 static jali_status check_widths(jali_context *ctx, const jali_adapt_options *opt)
@@ -76,7 +77,8 @@ done:
     return status;
 }
 
-int64_t axis_weight_px(const jali_adapt_options *opt, const element *solid, const element *hollow)
+int64_t axis_worth_units(const jali_adapt_options *opt, bool white, const element *solid, const element *hollow)
 {
-    return (int64_t)floor(opt->axis_worth * MIN(solid->size, hollow->size) + 0.5);
+    double worth = white ? opt->axis_worth_white : opt->axis_worth_black;
+    return (int64_t)floor(WRONG_UNITS * worth * MIN(solid->size, hollow->size) + 0.5);
 }
