@@ -41,7 +41,7 @@ static void add(column *sum, column c)
 
 static void print_column(column c, double count)
 {
-    printf(" | %5.2f (%3.0f/%3.0f)", c.error / count, c.recall_white / count, c.recall_black / count);
+    printf(" | %5.2f (%4.1f/%4.1f)", c.error / count, c.recall_white / count, c.recall_black / count);
 }
 
 static bool make(jali_context *ctx, jali_picture *picture, double width_mm, bool paper, jali_result *result)
