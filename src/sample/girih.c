@@ -8,9 +8,9 @@
 //          gap beside the strand that lies over.
 #include "sample/samples.h"
 
-static const double spacing = 409;                   // between the centres of two dodecagons
-static const double edge = 409 / 4.7320508075688773; // spacing = edge (3 + sqrt 3)
-static const double strap = 13.5, gap = 3.6;
+static const double spacing = 472;                   // between the centres of two dodecagons
+static const double edge = 472 / 4.7320508075688773; // spacing = edge (3 + sqrt 3)
+static const double strap = 15, gap = 7.6;
 static const double contact_turns = 60.0 / 360;
 static const double border = 34;
 

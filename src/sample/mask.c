@@ -106,10 +106,10 @@ static void draw_whiskers(board *b)
     for (int32_t row = 0; row < 3; row++) {
         for (int32_t i = 0; i < 3; i++)
             draw_both_discs(b, BLACK, at(542 + 17 * i + 4 * row, 668 + 13 * row - 5 * i), 4.2);
-        spot from = at(598, 654 + 14 * row), to = at(826 - 14 * row, 612 + 52 * row);
+        spot from = at(600, 650 + 19 * row), to = at(826 - 14 * row, 596 + 66 * row);
         spot p[4] = {from, plus(from, at(70, -18 + 4 * row)), plus(to, at(-90, -18 + 2 * row)), to};
-        draw_both_curves(b, BLACK, p, 17, 13);
-        draw_both_curves(b, WHITE, p, 7, 4);
+        draw_both_curves(b, BLACK, p, 25, 21);
+        draw_both_curves(b, WHITE, p, 9, 6);
     }
 }
 
