@@ -21,10 +21,12 @@ static void on_signal(int number)
     if (running) jali_cancel(running);
 }
 
-// The first signal asks the run to stop; a closed pipe and a full file come back as errors of the write.
+// The first signal asks the run to stop, the second ends the program; a closed pipe and a full file come back
+// as errors of the write.
 static void catch_signals(void)
 {
-    struct sigaction ask = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    struct sigaction ask = {.sa_handler = on_signal, .sa_flags = SA_RESETHAND},
+                     ignore = {.sa_handler = SIG_IGN};
     sigaction(SIGINT, &ask, NULL);
     sigaction(SIGTERM, &ask, NULL);
     sigaction(SIGPIPE, &ignore, NULL);

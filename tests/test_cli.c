@@ -295,6 +295,20 @@ TEST(pipes_carry_pictures)
     CHECK(memcmp(printed, "\x89PNG", 4) == 0 && *said == 0);
 }
 
+TEST(svg_is_drawn_where_it_is_built_in)
+{
+    run("--help", 0, "");
+    if (!strstr(printed, "SVG")) skip();
+    static const char svg[] = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 90 60\">"
+                              "<circle cx=\"45\" cy=\"30\" r=\"20\"/></svg>";
+    write_text("disc.svg", svg, sizeof svg - 1);
+    run("place disc.svg -o disc.png --width 45 --pixel 0.1 --frame 0", 0, "grid of 450 x 300 px");
+    write_text("cut.svg", svg, sizeof svg - 20);
+    run("place cut.svg -o cut.svg.png", 4, "cut.svg");
+    write_text("void.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>", 47);
+    run("place void.svg -o void.png", 4, "void.svg");
+}
+
 static void wait_until_it_reads(pid_t child)
 {
     (void)child;
@@ -343,6 +357,7 @@ int main(void)
         cmocka_unit_test(a_full_disk_is_a_sentence),
         cmocka_unit_test(an_unwritable_folder_is_a_sentence),
         cmocka_unit_test(pipes_carry_pictures),
+        cmocka_unit_test(svg_is_drawn_where_it_is_built_in),
         cmocka_unit_test(an_interrupt_leaves_no_file),
         cmocka_unit_test(nothing_half_written_is_left_behind),
     };
