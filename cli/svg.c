@@ -28,6 +28,13 @@ bool looks_like_svg(const uint8_t *bytes, size_t size)
     return memmem(bytes + first, MIN(size - first, (size_t)LOOK_BYTES), "<svg", 4) != NULL;
 }
 
+// GLib's messages may run over several lines; a sentence has one.
+static jali_status refused(jali_context *ctx, const char *name, const char *what, const GError *error)
+{
+    const char *reason = error ? error->message : "no reason given";
+    return fail(ctx, JALI_BAD_INPUT, "%s: the SVG %s: %.*s", name, what, (int)strcspn(reason, "\n"), reason);
+}
+
 static bool shape_of(RsvgHandle *svg, double size[2])
 {
     gboolean has_width, has_height, has_box;
@@ -77,8 +84,7 @@ static jali_status paint(jali_context *ctx, RsvgHandle *svg, const char *name, i
     RsvgRectangle viewport = {0, 0, width, height};
     jali_status status = JALI_OK;
     if (!rsvg_handle_render_document(svg, cairo, &viewport, &error))
-        status = fail(ctx, JALI_BAD_INPUT, "%s: the SVG cannot be drawn: %s", name,
-                      error ? error->message : "no reason");
+        status = refused(ctx, name, "cannot be drawn", error);
     else if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS)
         status = fail(ctx, JALI_NO_MEMORY, "%s: no memory for an SVG of %d x %d px", name, width, height);
     cairo_surface_flush(surface);
@@ -95,8 +101,7 @@ jali_status draw_svg(jali_context *ctx, const uint8_t *bytes, size_t size, const
     GError *error = NULL;
     RsvgHandle *svg = rsvg_handle_new_from_data(bytes, size, &error);
     if (!svg) {
-        jali_status status = fail(ctx, JALI_BAD_INPUT, "%s: the SVG is corrupt: %s", name,
-                                  error ? error->message : "no reason");
+        jali_status status = refused(ctx, name, "is corrupt", error);
         g_clear_error(&error);
         return status;
     }
