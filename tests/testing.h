@@ -84,6 +84,21 @@ static inline bool same_bitmap(const jali_bitmap *a, const jali_bitmap *b)
             memcmp(a->word, b->word, (size_t)(a->stride * a->height_px) * sizeof *a->word) == 0);
 }
 
+/// Three contexts, with 1, 2 and 3 threads: what they make must be the same bytes.
+static inline void open_thread_contexts(jali_context *by_threads[3])
+{
+    for (int32_t i = 0; i < 3; i++) {
+        jali_context_options opt = jali_context_defaults();
+        opt.threads = i + 1;
+        assert_int_equal(jali_context_create(&opt, &by_threads[i]), JALI_OK);
+    }
+}
+
+static inline void close_thread_contexts(jali_context *by_threads[3])
+{
+    for (int32_t i = 0; i < 3; i++) jali_context_free(by_threads[i]);
+}
+
 /// An allocator that refuses its n-th request (counted from 1) and counts what is not given back.
 typedef struct refusing { int64_t request, refuse_at, outstanding; } refusing;
 
