@@ -13,5 +13,7 @@ configure_package_config_file(cmake/jali-config.cmake.in ${PROJECT_BINARY_DIR}/j
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/jali-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/jali-config.cmake ${PROJECT_BINARY_DIR}/jali-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jali)
+# The prefix is told from where jali.pc lies, so that an installed tree may be moved.
+file(RELATIVE_PATH JALI_PREFIX_FROM_PKGCONFIG /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/jali.pc.in ${PROJECT_BINARY_DIR}/jali.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/jali.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

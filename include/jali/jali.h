@@ -23,8 +23,10 @@
 #include <jali/connect.h>
 #include <jali/contours.h>
 #include <jali/mesh.h>
+#include <jali/model.h>
 #include <jali/optimise.h>
 #include <jali/place.h>
+#include <jali/png.h>
 #include <jali/predict.h>
 #include <jali/read.h>
 #include <jali/sample.h>

@@ -67,12 +67,14 @@ static void leave_point(const triangulation *plane, int32_t a, int32_t b, int32_
     }
 }
 
-// Collect the edges that the segment from a crosses on its way to b; *end is the point where that ends.
+// Collect the edges that the segment from a crosses on its way to b; *end is the point where that ends (a itself
+// when an edge that may not be crossed is met at once).
 static jali_status collect(jali_context *ctx, const triangulation *plane, int32_t a, int32_t b,
                            pending *edges, size_t *count, int32_t *end, contact *met)
 {
     int32_t s;
     *count = 0;
+    *end = a;
     leave_point(plane, a, b, &s, end);
     while (s >= 0) {
         crossing c = {plane->corner[next_side(s)], plane->corner[last_side(s)]};
