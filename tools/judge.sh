@@ -21,7 +21,7 @@ agrees() { awk -v a="$1" -v b="$2" 'BEGIN { d = a - b; if (d < 0) d = -d; exit !
 ask_admesh() {
     admesh "$1" >"$work/admesh.txt" 2>&1 || return 1
     awk '/Number of parts/ { parts = $5 } /Total disconnected facets/ { open = $5; seen = 1 }
-         /Degenerate facets/ { bad += $4 } /Facets reversed/ { bad += $10 } /Backwards edges/ { bad += $3 }
+         /Degenerate facets|Facets reversed|Backwards edges/ { bad += $4 }
          END { exit !(seen && open == 0 && parts == 1 && bad == 0) }' "$work/admesh.txt" || return 1
     agrees "$(sed -n 's/.*Volume *: *\([-0-9.e+]*\).*/\1/p' "$work/admesh.txt")" "$2"
 }
