@@ -11,16 +11,19 @@
 
 #include <stdlib.h>
 
-// Where to set the element so that it covers (x, y) and makes the fewest black pixels white.
-static void cheapest_cover(const jali_bitmap *mask, const element *e, int32_t x, int32_t y, int32_t at[2])
+enum { NECK_SHARE = 3 };
+
+// Where to set the element so that it covers (x, y): the fewest black pixels made white, less the thin ones covered.
+static void cheapest_cover(const jali_bitmap *mask, const jali_bitmap *thin, const element *e, int32_t x, int32_t y,
+                           int32_t at[2])
 {
     int32_t best = INT32_MAX, even = e->size % 2 == 0;
     for (int32_t row = 0; row < e->size; row++) {
         int32_t dy = row - e->size / 2, half = e->half[abs(2 * dy + even) / 2];
         for (int32_t dx = -half; dx <= half - even; dx++) {
-            int32_t black = count_element(mask, x - dx, y - dy, e, false);
-            if (black >= best) continue;
-            best = black;
+            int32_t cost = count_element(mask, x - dx, y - dy, e, false) - count_element(thin, x - dx, y - dy, e, true);
+            if (cost >= best) continue;
+            best = cost;
             at[0] = x - dx;
             at[1] = y - dy;
         }
@@ -41,7 +44,7 @@ static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *
                 if (c.label[i] != next) continue;
                 next++;
                 int32_t at[2] = {0};
-                cheapest_cover(mask, e, c.span[i][0], y, at);
+                cheapest_cover(mask, &thin.type[type], e, c.span[i][0], y, at);
                 paint_element(mask, at[0], at[1], e, true);
             }
         components_free(ctx, &c);
@@ -49,6 +52,26 @@ static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *
 done:
     jali_details_free(ctx, &thin);
     components_free(ctx, &c);
+    return status;
+}
+
+// Cores less than `gap` px apart count as one: the neck between two discs of 12 px whose centres are 4 px apart is
+// 11.3 px wide.
+static jali_status merge_near(jali_context *ctx, int32_t gap, jali_bitmap *cores)
+{
+    element disc = {0};
+    jali_bitmap merged = {0};
+    jali_status status;
+    if (gap < 2) return JALI_OK;
+    TRY(element_disc(ctx, gap | 1, &disc));
+    TRY(jali_bitmap_create(ctx, cores->width_px, cores->height_px, &merged));
+    TRY(dilate(ctx, cores, &disc, false, &merged));
+    jali_bitmap swap = *cores;
+    *cores = merged;
+    merged = swap;
+done:
+    element_free(ctx, &disc);
+    jali_bitmap_free(ctx, &merged);
     return status;
 }
 
@@ -63,6 +86,7 @@ jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_options *opt, b
     if (thicken) TRY(thicken_details(ctx, opt, &solid, mask));
     TRY(erode(ctx, mask, &solid, opt->outside_solid, cores));
     if (!thicken) TRY(dilate(ctx, cores, &solid, false, mask));
+    TRY(merge_near(ctx, opt->solid_px / NECK_SHARE, cores));
 done:
     if (status != JALI_OK) jali_bitmap_free(ctx, cores);
     element_free(ctx, &solid);

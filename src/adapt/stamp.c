@@ -3,11 +3,13 @@
 // Instead of: Algorithm 3's rounds (conflict.c), whose majority vote over whole regions floods hatchings.
 // Idea:    in a print, solids and voids are unions of discs. Begin with the opening and closing of the drawing;
 //          at a place where a detail was lost set a disc of its tone; what that leaves too thin in the other
-//          tone goes with it (window_uncovered). Keep the change if it lowers
+//          tone, the pixels that no disc covers any more, goes with it. Keep the change if it lowers
 //              wrong pixels + worth * lost pixels of the axes of details.
 //          The best places come first: passes ask for a gain of 24 %, 8 %, then 0 of a disc's area.
 //          So the owner of a conflict is whoever leaves the smaller predicted error, place by place; in a
 //          hatching too fine to print every other line takes its neighbours' room.
+// Speed:   the places where a disc of each tone fits are kept up to date (fits), so what a new disc uncovers
+//          follows from one dilation in a small window; most places are decided by the disc's pixels alone.
 // Ends:    each kept change lowers a whole number that is never negative; passes are limited besides.
 // Limits:  windows are 128 px: where half a disc and twice the other one pass 63 px (a working pixel far finer
 //          than the printer needs) there is no search, only the opening and closing.
@@ -24,21 +26,29 @@ enum { BAND_ROWS = 256, PAD_PX = 64, PASSES = 6, MAX_REACH_PX = 63, WRONG_ROUNDS
 
 static const double PASS_GAIN[PASSES] = {0.24, 0.08, 0, 0, 0, 0}; // of a disc's area
 
+// A change may leave so much of a disc's area too thin for its new tone; the finish deals with it. At 0 every third
+// disc is refused and the recall of white falls by 3 points; without a limit the finish floods voids (black -1.5).
+static const double THIN_SHARE = 0.2;
+
 // A tone's side of the search.
 typedef struct tone {
     jali_bitmap axis;      // of the details of this tone
     jali_bitmap open;      // places of the axis that are still worth a try
+    jali_bitmap fits;      // centres at which the disc fits into the print's pixels of this tone
     element disc;
     window_element fit;
     uint64_t row[WINDOW_MAX_ELEMENT]; // the disc, row by row, from its left edge
     int32_t area;
+    window blocked;        // centres of the other tone's discs that meet this disc set in the window's middle
     int64_t worth;         // of a lost pixel of the axis; a wrong pixel counts WRONG_UNITS
 } tone;
 
 typedef struct stamping {
     jali_bitmap drawing, print; // padded by PAD_PX on each side
     tone side[2];               // [white]
-    int32_t rows;               // of a window
+    window inner, fits_inner;   // where a change can reach, and where it can change which discs fit; wide windows
+    int32_t wide_rows;          // of a window that decides which discs fit around a change
+    int32_t rows;               // of a window that decides what a disc changes
     int32_t pass, turn, band_count;
     jali_stamp_report *band;    // [band_count]
 } stamping;
@@ -92,25 +102,78 @@ VECTORISED static int64_t change_by_disc(const stamping *s, int32_t x, int32_t y
     return white ? sum : -sum;
 }
 
+// The window's pixels of one tone, as set bits.
+static void read_tone(const stamping *s, int32_t x0, int32_t y0, int32_t rows, bool white, window *w)
+{
+    window_read(&s->print, x0, y0, rows, w);
+    if (white) return;
+    for (int32_t k = 0; k < rows; k++) {
+        w->left[k] = ~w->left[k];
+        w->right[k] = ~w->right[k];
+    }
+}
+
+// Row k of the window in which only a square around the middle counts.
+static const uint64_t *inner_rows(const stamping *s, const uint64_t *row, int32_t rows)
+{
+    return row + (s->wide_rows - rows) / 2;
+}
+
 // What becomes of the window when the disc is set: all pixels that change tone.
 static void disc_and_after(const stamping *s, int32_t x0, int32_t y0, bool white, window *change)
 {
-    window print, rest;
+    window other, fits, covered;
     const tone *t = &s->side[white];
-    window_read(&s->print, x0, y0, s->rows, &print);
-    uint64_t flip = white ? ~UINT64_C(0) : 0; // the other tone, as set bits
-    int32_t left = WINDOW_COLUMNS / 2 - t->fit.size / 2, top = s->rows / 2 - t->fit.size / 2;
+    const uint64_t *left = inner_rows(s, s->inner.left, s->rows), *right = inner_rows(s, s->inner.right, s->rows);
+    const uint64_t *blocked_left = inner_rows(s, t->blocked.left, s->rows);
+    const uint64_t *blocked_right = inner_rows(s, t->blocked.right, s->rows);
+    read_tone(s, x0, y0, s->rows, !white, &other);
+    window_read(&s->side[!white].fits, x0, y0, s->rows, &fits);
     for (int32_t k = 0; k < s->rows; k++) {
-        uint64_t disc = k >= top && k < top + t->fit.size ? t->row[k - top] : 0;
-        print.left[k] ^= flip;
-        print.right[k] ^= flip;
-        rest.left[k] = print.left[k] & ~(disc << left);
-        rest.right[k] = print.right[k] & ~(disc >> (64 - left));
+        fits.left[k] &= ~blocked_left[k];
+        fits.right[k] &= ~blocked_right[k];
     }
-    window_uncovered(&rest, s->rows, &s->side[!white].fit, change);
+    window_dilate(&fits, s->rows, &s->side[!white].fit, &covered);
     for (int32_t k = 0; k < s->rows; k++) {
-        change->left[k] |= print.left[k] & ~rest.left[k];
-        change->right[k] |= print.right[k] & ~rest.right[k];
+        change->left[k] = other.left[k] & ~covered.left[k] & left[k];
+        change->right[k] = other.right[k] & ~covered.right[k] & right[k];
+    }
+}
+
+// Whether the change leaves too many pixels that no disc of their new tone covers: they would have to go again.
+// What was covered stays covered, for the tone only gains.
+static bool leaves_thin(const stamping *s, const window *change, int32_t x, int32_t y, bool white)
+{
+    window own, fits, covered;
+    int32_t first = (s->wide_rows - s->rows) / 2;
+    read_tone(s, x - WINDOW_COLUMNS / 2, y - s->wide_rows / 2, s->wide_rows, white, &own);
+    for (int32_t k = 0; k < s->rows; k++) {
+        own.left[first + k] |= change->left[k];
+        own.right[first + k] |= change->right[k];
+    }
+    window_erode(&own, s->wide_rows, &s->side[white].fit, &fits);
+    window_dilate(&fits, s->wide_rows, &s->side[white].fit, &covered);
+    int64_t thin = 0;
+    for (int32_t k = 0; k < s->rows; k++)
+        thin += __builtin_popcountll(change->left[k] & ~covered.left[first + k]) +
+                __builtin_popcountll(change->right[k] & ~covered.right[first + k]);
+    return thin > THIN_SHARE * s->side[white].area;
+}
+
+// Bring `fits` up to date around a change.
+static void refresh_fits(stamping *s, int32_t x, int32_t y)
+{
+    int32_t x0 = x - WINDOW_COLUMNS / 2, y0 = y - s->wide_rows / 2;
+    for (int32_t white = 0; white < 2; white++) {
+        window pixels, fits, old;
+        read_tone(s, x0, y0, s->wide_rows, white, &pixels);
+        window_erode(&pixels, s->wide_rows, &s->side[white].fit, &fits);
+        window_read(&s->side[white].fits, x0, y0, s->wide_rows, &old);
+        for (int32_t k = 0; k < s->wide_rows; k++) {
+            old.left[k] = (old.left[k] ^ fits.left[k]) & s->fits_inner.left[k];
+            old.right[k] = (old.right[k] ^ fits.right[k]) & s->fits_inner.right[k];
+        }
+        window_flip(&s->side[white].fits, x0, y0, s->wide_rows, &old);
     }
 }
 
@@ -127,7 +190,9 @@ static bool try_disc(stamping *s, jali_stamp_report *report, int32_t x, int32_t 
     disc_and_after(s, x0, y0, white, &change);
     int64_t sum = change_in_sum(s, &change, x0, y0, white);
     if (sum >= -gain) return sum < 0;
+    if (leaves_thin(s, &change, x, y, white)) return false;
     window_flip(&s->print, x0, y0, s->rows, &change);
+    refresh_fits(s, x, y);
     if (white) report->white++;
     else report->black++;
     return true;
@@ -251,6 +316,62 @@ static jali_status pad(jali_context *ctx, const jali_bitmap *a, bool outside, ja
     return JALI_OK;
 }
 
+// A square of 2 half x 2 half pixels in the middle of a wide window.
+static void draw_middle(const stamping *s, int32_t half, window *w)
+{
+    *w = (window){0};
+    uint64_t side = half >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << half) - 1;
+    for (int32_t k = MAX(s->wide_rows / 2 - half, 0); k < MIN(s->wide_rows / 2 + half, s->wide_rows); k++) {
+        w->left[k] = side << (64 - MIN(half, 64));
+        w->right[k] = side;
+    }
+}
+
+// How far things reach from a disc's centre, half a pixel aside: a change, as far as the other tone's discs that
+// meet the disc; the discs that decide about it, half a disc more; the pixels that decide about those, half again.
+// Returns the furthest.
+static int32_t plan_windows(stamping *s, int32_t solid, int32_t hollow)
+{
+    int32_t large = (MAX(solid, hollow) + 1) / 2;
+    int32_t change = MAX((solid + 1) / 2 + hollow, (hollow + 1) / 2 + solid) + 1;
+    s->rows = 2 * ((change + large + 3) / 4 * 4);
+    s->wide_rows = MIN(2 * ((change + 2 * large + 3) / 4 * 4), WINDOW_ROWS);
+    if (change + 2 * large > MAX_REACH_PX) return change + 2 * large;
+    draw_middle(s, change, &s->inner);
+    draw_middle(s, change + large, &s->fits_inner);
+    for (int32_t white = 0; white < 2; white++) {
+        tone *t = &s->side[white];
+        window rest = {0};
+        int32_t left = WINDOW_COLUMNS / 2 - t->fit.size / 2, top = s->wide_rows / 2 - t->fit.size / 2;
+        for (int32_t k = 0; k < s->wide_rows; k++) {
+            uint64_t disc = k >= top && k < top + t->fit.size ? t->row[k - top] : 0;
+            rest.left[k] = ~(disc << left);
+            rest.right[k] = ~(disc >> (64 - left));
+        }
+        window_erode(&rest, s->wide_rows, &s->side[!white].fit, &t->blocked);
+        for (int32_t k = 0; k < s->wide_rows; k++) {
+            t->blocked.left[k] = ~t->blocked.left[k];
+            t->blocked.right[k] = ~t->blocked.right[k];
+        }
+    }
+    return change + 2 * large;
+}
+
+// Which discs fit into the first print.
+static jali_status find_fits(jali_context *ctx, stamping *s, jali_bitmap *scratch)
+{
+    jali_status status;
+    for (int32_t white = 0; white < 2; white++) {
+        tone *t = &s->side[white];
+        TRY(jali_bitmap_create(ctx, s->print.width_px, s->print.height_px, &t->fits));
+        if (white) combine(ctx, RULE_AND, &s->print, &s->print, scratch);
+        else invert(ctx, &s->print, scratch);
+        TRY(erode(ctx, scratch, &t->disc, white, &t->fits));
+    }
+done:
+    return status;
+}
+
 jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, const jali_adapt_options *opt,
                              jali_bitmap *print, jali_stamp_report *report)
 {
@@ -270,15 +391,16 @@ jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, cons
     TRY(prepare_tone(ctx, &s, false, &scratch));
     int32_t solid = s.side[1].disc.size, hollow = s.side[0].disc.size;
     for (int32_t white = 0; white < 2; white++) s.side[white].worth = axis_worth_units(opt, white, &s.side[1].disc, &s.side[0].disc);
-    // Half a disc, and twice the other disc beyond it, decide what a disc changes.
-    int32_t reach = MAX(solid / 2 + 2 * hollow, hollow / 2 + 2 * solid) + 1;
-    s.rows = 2 * ((reach + 3) / 4 * 4);
+    int32_t reach = plan_windows(&s, solid, hollow);
     s.band_count = (drawing->height_px + BAND_ROWS - 1) / BAND_ROWS;
     TRY(ALLOCATE_CLEARED(ctx, s.band, s.band_count));
     TRY(jali_bitmap_copy(ctx, &s.drawing, &s.print));
     TRY(open_by(ctx, &s.print, &s.side[1].disc, true, &scratch, &s.print));
     TRY(close_by(ctx, &s.print, &s.side[0].disc, true, &scratch, &s.print));
-    if (reach <= MAX_REACH_PX) TRY(search(ctx, &s, &scratch, report));
+    if (reach <= MAX_REACH_PX) {
+        TRY(find_fits(ctx, &s, &scratch));
+        TRY(search(ctx, &s, &scratch, report));
+    }
     TRY(jali_bitmap_create(ctx, drawing->width_px, drawing->height_px, print));
     cut_out(&s.print, PAD_PX, PAD_PX, print);
 done:
@@ -289,6 +411,7 @@ done:
     for (int32_t i = 0; i < 2; i++) {
         jali_bitmap_free(ctx, &s.side[i].axis);
         jali_bitmap_free(ctx, &s.side[i].open);
+        jali_bitmap_free(ctx, &s.side[i].fits);
         element_free(ctx, &s.side[i].disc);
     }
     release(ctx, s.band);

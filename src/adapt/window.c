@@ -1,4 +1,4 @@
-// Openings in a window: the same levels as raster/morphology.c, rows side by side in vector registers.
+// Erosion and dilation in a window: the same levels as raster/morphology.c, rows side by side in vector registers.
 #include "adapt/window.h"
 #include "base/base.h"
 
@@ -71,7 +71,7 @@ VECTORISED static void and_shifted(uint64_t *out, const uint64_t *in, int32_t ro
     for (int32_t k = 0; k < rows; k++) out[k] &= in[k];
 }
 
-static void window_erode(const window *a, int32_t rows, const window_element *e, bool reflect, window *out)
+static void shrink(const window *a, int32_t rows, const window_element *e, bool reflect, window *out)
 {
     padded l[WINDOW_MAX_ELEMENT / 2 + 2], r[WINDOW_MAX_ELEMENT / 2 + 2];
     bool even = e->size % 2 == 0;
@@ -97,17 +97,22 @@ static void window_erode(const window *a, int32_t rows, const window_element *e,
     }
 }
 
-void window_uncovered(const window *a, int32_t rows, const window_element *e, window *uncovered)
+void window_erode(const window *a, int32_t rows, const window_element *e, window *fits)
 {
-    window eroded;
-    window_erode(a, rows, e, false, &eroded);
+    shrink(a, rows, e, false, fits);
+}
+
+// The complement of the eroded complement, by the reflected element. Nothing comes in from beyond the window.
+void window_dilate(const window *a, int32_t rows, const window_element *e, window *painted)
+{
+    window rest = {0};
     for (int32_t k = 0; k < rows; k++) {
-        eroded.left[k] = ~eroded.left[k];
-        eroded.right[k] = ~eroded.right[k];
+        rest.left[k] = ~a->left[k];
+        rest.right[k] = ~a->right[k];
     }
-    window_erode(&eroded, rows, e, true, uncovered); // the complement of the opening
+    shrink(&rest, rows, e, true, painted);
     for (int32_t k = 0; k < rows; k++) {
-        uncovered->left[k] &= a->left[k];
-        uncovered->right[k] &= a->right[k];
+        painted->left[k] = ~painted->left[k];
+        painted->right[k] = ~painted->right[k];
     }
 }

@@ -30,7 +30,9 @@ void window_read(const jali_bitmap *a, int32_t x0, int32_t y0, int32_t rows, win
 /// Flip the pixels of `a` that are set in `change`.
 void window_flip(jali_bitmap *a, int32_t x0, int32_t y0, int32_t rows, const window *change);
 
-/// What no element inside `a` covers: a minus its opening. Beyond the window counts as set.
-void window_uncovered(const window *a, int32_t rows, const window_element *e, window *uncovered);
+/// Where the element fits into `a`; beyond the window counts as set.
+void window_erode(const window *a, int32_t rows, const window_element *e, window *fits);
+/// What the element paints when it is centred on each pixel of `a`.
+void window_dilate(const window *a, int32_t rows, const window_element *e, window *painted);
 
 #endif
