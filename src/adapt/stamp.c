@@ -61,17 +61,23 @@ VECTORISED static int64_t count_window(const window *a, const window *b, int32_t
     return count;
 }
 
-// How the sum changes when `change` becomes white (or black).
+// How the sum changes when `change` becomes white (or black). Few rows of the window change at all.
 static int64_t change_in_sum(const stamping *s, const window *change, int32_t x0, int32_t y0, bool white)
 {
-    window w;
-    int64_t all = count_window(change, change, s->rows);
-    window_read(&s->drawing, x0, y0, s->rows, &w);
-    int64_t right = count_window(change, &w, s->rows); // white in the drawing
-    window_read(&s->side[1].axis, x0, y0, s->rows, &w);
-    int64_t found = count_window(change, &w, s->rows);
-    window_read(&s->side[0].axis, x0, y0, s->rows, &w);
-    int64_t lost = count_window(change, &w, s->rows);
+    window some, w;
+    int32_t first = 0, last = s->rows - 1;
+    while (first < last && !(change->left[first] | change->right[first])) first++;
+    while (last > first && !(change->left[last] | change->right[last])) last--;
+    int32_t rows = last - first + 1;
+    memcpy(some.left, change->left + first, (size_t)rows * sizeof *some.left);
+    memcpy(some.right, change->right + first, (size_t)rows * sizeof *some.right);
+    int64_t all = count_window(&some, &some, rows);
+    window_read(&s->drawing, x0, y0 + first, rows, &w);
+    int64_t right = count_window(&some, &w, rows); // white in the drawing
+    window_read(&s->side[1].axis, x0, y0 + first, rows, &w);
+    int64_t found = count_window(&some, &w, rows);
+    window_read(&s->side[0].axis, x0, y0 + first, rows, &w);
+    int64_t lost = count_window(&some, &w, rows);
     int64_t sum = WRONG_UNITS * (all - 2 * right) + s->side[0].worth * lost - s->side[1].worth * found;
     return white ? sum : -sum;
 }
