@@ -43,9 +43,17 @@ jali_status element_disc(jali_context *ctx, double diameter_px, element *e)
     return disc_rows(ctx, size, fmax(diameter_px, size), e); // rounding up must not leave the last row empty
 }
 
+// Row i begins 2 i + even - 1 half pixels from the centre: there the disc is widest within the row.
 jali_status element_wide_disc(jali_context *ctx, int32_t size, element *e)
 {
-    return disc_rows(ctx, size, size + 0.5, e);
+    jali_status status = element_rows(ctx, size, e);
+    int32_t even = size % 2 == 0;
+    for (int32_t i = 0; i < e->rows; i++) {
+        double row = MAX(2 * i + even - 1, 0);
+        double reach = sqrt((double)size * size - row * row); // half pixels
+        e->half[i] = MIN((int32_t)ceil((reach - !even) / 2), size / 2);
+    }
+    return status;
 }
 
 jali_status element_sum(jali_context *ctx, const element *a, const element *b, element *sum)

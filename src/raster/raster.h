@@ -41,8 +41,8 @@ jali_status element_square(jali_context *ctx, int32_t size, element *e);
 /// All pixels whose centre lies within diameter_px / 2 of the centre; its size is the whole number nearest
 /// to diameter_px (at least 1), so that a bar `size` px wide just holds it.
 jali_status element_disc(jali_context *ctx, double diameter_px, element *e);
-/// The disc of `size` px with every pixel whose centre lies within a quarter of a pixel of it as well: what a
-/// finer grid would paint with a disc of that diameter fits into what this paints.
+/// The disc of `size` px and every pixel that it touches: what a finer grid paints with a disc of that diameter lies
+/// within what this paints.
 jali_status element_wide_disc(jali_context *ctx, int32_t size, element *e);
 /// The Minkowski sum: painting with it is painting with `a`, then with the odd element `b`.
 jali_status element_sum(jali_context *ctx, const element *a, const element *b, element *sum);
