@@ -175,6 +175,44 @@ TEST(components_are_those_of_a_flood_fill)
     }
 }
 
+// The centres of maximal squares: no neighbour inside the bitmap has a greater chessboard distance.
+static int32_t square_distance(const jali_bitmap *a, int32_t x, int32_t y, bool white, bool outside)
+{
+    for (int32_t reach = 0;; reach++)
+        for (int32_t dy = -reach; dy <= reach; dy++)
+            for (int32_t dx = -reach; dx <= reach; dx++) {
+                int32_t u = x + dx, v = y + dy;
+                bool inside = u >= 0 && v >= 0 && u < a->width_px && v < a->height_px;
+                if (inside ? jali_bitmap_get(a, u, v) != white : !outside) return reach;
+                if (reach > 200) return reach;
+            }
+}
+
+TEST(medial_axis_is_the_ridge_of_the_chessboard_distance)
+{
+    uint64_t seed = 21;
+    for (int32_t round = 0; round < 12; round++) {
+        int32_t w = 40 + 17 * (round % 5), h = 90;
+        jali_bitmap a = random_bitmap(&seed, w, h, 97), axis, limited;
+        bool white = round % 3 != 0, outside = round % 2;
+        CHECK_OK(medial_axis(ctx, &a, white, outside, 0, &axis));
+        CHECK_OK(medial_axis(ctx, &a, white, outside, 60, &limited));
+        CHECK(same_bitmap(&axis, &limited));
+        for (int32_t y = 0; y < h; y++)
+            for (int32_t x = 0; x < w; x++) {
+                int32_t own = square_distance(&a, x, y, white, outside), best = own;
+                for (int32_t k = 0; k < 9; k++) {
+                    int32_t u = x + k % 3 - 1, v = y + k / 3 - 1;
+                    if (u >= 0 && v >= 0 && u < w && v < h) best = MAX(best, square_distance(&a, u, v, white, outside));
+                }
+                CHECK_INT(jali_bitmap_get(&axis, x, y), own > 0 && best == own);
+            }
+        jali_bitmap_free(ctx, &a);
+        jali_bitmap_free(ctx, &axis);
+        jali_bitmap_free(ctx, &limited);
+    }
+}
+
 static jali_status open_and_label(jali_context *limited, void *data)
 {
     jali_status status;
@@ -207,6 +245,7 @@ int main(void)
         cmocka_unit_test(wide_elements_cross_words),
         cmocka_unit_test(a_bar_as_wide_as_the_disc_survives_and_a_thinner_one_does_not),
         cmocka_unit_test(components_are_those_of_a_flood_fill),
+        cmocka_unit_test(medial_axis_is_the_ridge_of_the_chessboard_distance),
         cmocka_unit_test(every_refused_allocation_is_reported),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);

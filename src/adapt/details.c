@@ -20,12 +20,12 @@ void jali_details_free(jali_context *ctx, jali_details *details)
 typedef struct detail {
     int32_t first, count;
     int32_t x0, y0, x1, y1;
-    int32_t axis_px;
+    int32_t pixels, axis_px;
     bool touches_own; // a neighbour of its tone is no detail: it hangs on something larger
 } detail;
 
 typedef struct sorting {
-    const jali_bitmap *picture, *axis;
+    const jali_bitmap *picture;
     bool white, outside_solid, isolated_matters;
     int32_t epsilon_px;
     components c;
@@ -52,7 +52,7 @@ static jali_status gather_runs(jali_context *ctx, sorting *s)
             d->x1 = MAX(d->x1, c->span[i][1]);
             d->y0 = MIN(d->y0, y);
             d->y1 = y + 1;
-            d->axis_px += count_run(s->axis, y, c->span[i][0], c->span[i][1]);
+            d->pixels += c->span[i][1] - c->span[i][0];
             s->row_of[i] = y;
         }
     for (int32_t i = 0, first = 0; i < c->count; i++) {
@@ -66,6 +66,21 @@ static jali_status gather_runs(jali_context *ctx, sorting *s)
     }
 done:
     return status;
+}
+
+// The axis has no more pixels than the detail: where no detail has enough, nobody needs an axis.
+static jali_status measure_axes(jali_context *ctx, sorting *s, const jali_bitmap *removed, int32_t rounds)
+{
+    int32_t largest = 0;
+    for (int32_t i = 0; i < s->c.count; i++) largest = MAX(largest, s->detail[i].pixels);
+    if (largest <= s->epsilon_px) return JALI_OK;
+    jali_bitmap axis;
+    jali_status status = medial_axis(ctx, removed, true, false, rounds, &axis);
+    if (status != JALI_OK) return status;
+    for (int32_t i = 0; i < s->c.run_count; i++)
+        s->detail[s->c.label[i]].axis_px += count_run(&axis, s->row_of[i], s->c.span[i][0], s->c.span[i][1]);
+    jali_bitmap_free(ctx, &axis);
+    return JALI_OK;
 }
 
 // A window of the picture around a detail: one pixel of ring, one word and row of zeros around that.
@@ -191,9 +206,9 @@ jali_status jali_adapt_details(jali_context *ctx, const jali_bitmap *picture, bo
                                const jali_adapt_options *opt, jali_details *details)
 {
     jali_status status;
-    jali_bitmap removed = {0}, scratch = {0}, axis = {0};
+    jali_bitmap removed = {0}, scratch = {0};
     element e[2] = {0}; // [white]
-    sorting s = {.picture = picture, .axis = &axis, .white = white, .outside_solid = opt->outside_solid,
+    sorting s = {.picture = picture, .white = white, .outside_solid = opt->outside_solid,
                  .isolated_matters = opt->isolated_matters, .epsilon_px = opt->epsilon_px};
     *details = (jali_details){0};
     TRY(mask_elements(ctx, opt, &e[1], &e[0]));
@@ -204,15 +219,14 @@ jali_status jali_adapt_details(jali_context *ctx, const jali_bitmap *picture, bo
     TRY(white ? open_by(ctx, picture, &e[1], opt->outside_solid, &scratch, &removed)
               : close_by(ctx, picture, &e[0], opt->outside_solid, &scratch, &removed));
     combine(ctx, RULE_XOR, picture, &removed, &removed);
-    TRY(medial_axis(ctx, &removed, true, false, e[white].size, &axis));
     TRY(label_components(ctx, &removed, true, white ? 4 : 8, &s.c));
     TRY(gather_runs(ctx, &s));
+    TRY(measure_axes(ctx, &s, &removed, e[white].size));
     TRY(sort_details(ctx, &s, details));
 done:
     if (status != JALI_OK) jali_details_free(ctx, details);
     jali_bitmap_free(ctx, &removed);
     jali_bitmap_free(ctx, &scratch);
-    jali_bitmap_free(ctx, &axis);
     element_free(ctx, &e[0]);
     element_free(ctx, &e[1]);
     components_free(ctx, &s.c);

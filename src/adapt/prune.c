@@ -117,7 +117,7 @@ jali_status jali_adapt_prune(jali_context *ctx, const jali_bitmap *drawing, cons
     *dropped = 0;
     if (bridges->count == 0) return JALI_OK;
     TRY(printed_elements(ctx, opt, &solid, &hollow));
-    TRY(medial_axis(ctx, drawing, true, true, solid.size, &axis));
+    TRY(medial_axis(ctx, drawing, true, true, solid.size / 2 + 1, &axis));
     TRY(build_tree(ctx, print, bridges, &t));
     TRY(component_areas(ctx, &t.c, &area));
     weigh_pieces(drawing, &axis, axis_worth_units(opt, true, &solid, &hollow), &t);

@@ -72,7 +72,8 @@ void resize_nearest(jali_context *ctx, const jali_bitmap *src, int32_t left, int
 
 /// The centres of the maximal squares inside the white (or black) pixels: the ridge of the chessboard distance.
 /// Source: Lantuejoul's formula, the union over k of E_k - opening(E_k), E_k the k-fold 3 x 3 erosion.
-///   in     rounds   stop after so many erosions: the axis of features up to 2 * rounds px wide; 0 = of all
+///   in     outside  whether what lies beyond the bitmap is of that tone too
+///          rounds   stop after so many erosions: the axis of features up to 2 * rounds px wide; 0 = of all
 jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, int32_t rounds,
                         jali_bitmap *axis);
 
