@@ -1,9 +1,10 @@
-// The table of docs/results.md: every picture at two widths, the input, connected only, the paper's way, ours.
+// The table of docs/results.md: every picture at two widths, the input, connected only, the paper's way,
+// ours.
 //
 //     results [DATA_FOLDER] [--threads N] [--only NAME]
 //
-// Widths: 70 and 40 mm for 1000 px, in proportion for the others (the 24 runs that docs/results.md compares with);
-// phi 0.1 / 0.3 / 0.5 mm. Exit 1 when a promise is not kept.
+// Widths: 70 and 40 mm for 1000 px, in proportion for the others (the 24 runs that docs/results.md compares
+// with); phi 0.1 / 0.3 / 0.5 mm. Exit 1 when a promise is not kept.
 #include <jali/jali.h>
 
 #include <stdio.h>
@@ -15,12 +16,12 @@ typedef struct run {
     double width_mm;
 } run;
 
-static const run RUNS[] = {
-    {"calligraphy", 70}, {"calligraphy", 40}, {"dense", 70},       {"dense", 40},       {"halftone", 70}, {"halftone", 40},
-    {"islands", 70},     {"islands", 40},     {"lion", 70},        {"lion", 40},        {"monroe-like", 70},
-    {"monroe-like", 40}, {"ornament", 84},    {"ornament", 48},    {"plum", 105},       {"plum", 60},
-    {"portrait", 70},    {"portrait", 40},    {"scenery", 120},    {"scenery", 85},     {"text", 70},     {"text", 40},
-    {"tree", 80},        {"tree", 56}};
+static const run RUNS[] = {{"calligraphy", 70}, {"calligraphy", 40}, {"dense", 70},       {"dense", 40},
+                           {"halftone", 70},    {"halftone", 40},    {"islands", 70},     {"islands", 40},
+                           {"lion", 70},        {"lion", 40},        {"monroe-like", 70}, {"monroe-like", 40},
+                           {"ornament", 84},    {"ornament", 48},    {"plum", 105},       {"plum", 60},
+                           {"portrait", 70},    {"portrait", 40},    {"scenery", 120},    {"scenery", 85},
+                           {"text", 70},        {"text", 40},        {"tree", 80},        {"tree", 56}};
 enum { RUN_COUNT = sizeof RUNS / sizeof *RUNS };
 
 typedef struct column {
@@ -66,15 +67,19 @@ int main(int argc, char **argv)
     jali_context_options copt = jali_context_defaults();
     copt.threads = 1;
     for (int i = 1; i < argc; i++) {
-        if (!strcmp(argv[i], "--threads") && i + 1 < argc) copt.threads = atoi(argv[++i]);
-        else if (!strcmp(argv[i], "--only") && i + 1 < argc) only = argv[++i];
-        else folder = argv[i];
+        if (!strcmp(argv[i], "--threads") && i + 1 < argc)
+            copt.threads = atoi(argv[++i]);
+        else if (!strcmp(argv[i], "--only") && i + 1 < argc)
+            only = argv[++i];
+        else
+            folder = argv[i];
     }
     jali_context *ctx;
     if (jali_context_create(&copt, &ctx) != JALI_OK) return 1;
     column sum[4] = {{0}};
     int count = 0, better_than_connected = 0, broken = 0;
-    printf("| picture, width mm | input | connected only | --paper | default | pieces | promises | s paper, default | mesh triangles |\n"
+    printf("| picture, width mm | input | connected only | --paper | default | pieces | promises | s paper, "
+           "default | mesh triangles |\n"
            "|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < RUN_COUNT; i++) {
         if (only && strcmp(only, RUNS[i].name)) continue;
@@ -88,17 +93,18 @@ int main(int argc, char **argv)
         }
         if (!make(ctx, &picture, RUNS[i].width_mm, true, &paper)) return 1;
         if (!make(ctx, &picture, RUNS[i].width_mm, false, &ours)) return 1;
-        column c[4] = {column_of(&ours.input_print), column_of(&ours.connected_print), column_of(&paper.result_print),
-                       column_of(&ours.result_print)};
-        bool kept = ours.one_piece && ours.printable && ours.closed, paper_kept = paper.one_piece && paper.printable;
+        column c[4] = {column_of(&ours.input_print), column_of(&ours.connected_print),
+                       column_of(&paper.result_print), column_of(&ours.result_print)};
+        bool kept = ours.one_piece && ours.printable && ours.closed,
+             paper_kept = paper.one_piece && paper.printable;
         printf("| %s %.0f", RUNS[i].name, RUNS[i].width_mm);
         for (int k = 0; k < 4; k++) {
             print_column(c[k], 1);
             add(&sum[k], c[k]);
         }
-        printf(" | %d, %d | %s, %s | %.2f, %.2f | %d |\n", paper.result_print.pieces, ours.result_print.pieces,
-               paper_kept ? "kept" : "BROKEN", kept ? "kept" : "BROKEN", image_seconds(&paper), image_seconds(&ours),
-               ours.mesh.triangle_count);
+        printf(" | %d, %d | %s, %s | %.2f, %.2f | %d |\n", paper.result_print.pieces,
+               ours.result_print.pieces, paper_kept ? "kept" : "BROKEN", kept ? "kept" : "BROKEN",
+               image_seconds(&paper), image_seconds(&ours), ours.mesh.triangle_count);
         fflush(stdout);
         better_than_connected += c[3].error < c[1].error;
         broken += !kept + !paper_kept;
@@ -109,7 +115,8 @@ int main(int argc, char **argv)
     }
     printf("| mean of %d", count);
     for (int k = 0; k < 4; k++) print_column(sum[k], count);
-    printf(" | | | | |\n\ndefault below connected only: %d of %d; promises broken: %d\n", better_than_connected, count, broken);
+    printf(" | | | | |\n\ndefault below connected only: %d of %d; promises broken: %d\n",
+           better_than_connected, count, broken);
     jali_context_free(ctx);
     return broken > 0;
 }

@@ -67,8 +67,8 @@ static void leave_point(const triangulation *plane, int32_t a, int32_t b, int32_
     }
 }
 
-// Collect the edges that the segment from a crosses on its way to b; *end is the point where that ends (a itself
-// when an edge that may not be crossed is met at once).
+// Collect the edges that the segment from a crosses on its way to b; *end is the point where that ends (a
+// itself when an edge that may not be crossed is met at once).
 static jali_status collect(jali_context *ctx, const triangulation *plane, int32_t a, int32_t b,
                            pending *edges, size_t *count, int32_t *end, contact *met)
 {
