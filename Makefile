@@ -5,6 +5,7 @@
 #   make bench      times and memory, stage by stage        make pictures   draw docs/pictures again
 #   make fuzz       each fuzzer for FUZZ_SECONDS            make format     lay the code out
 #   make coverage   what the tests reach                    make lint       clang-tidy, cppcheck, layout
+#   make docs       renew what docs/cli.md quotes
 PACKAGES := cmake ninja-build gcc g++ pkg-config libpng-dev libjpeg62-turbo-dev libwebp-dev librsvg2-dev \
             libcairo2-dev libdeflate-dev libzip-dev libexpat1-dev libjansson-dev libcmocka-dev
 FUZZ_PACKAGES     := clang libclang-rt-dev
@@ -19,7 +20,7 @@ BENCH ?=
 # The thread sanitizer of gcc 12 cannot start under more than 28 bits of address randomisation.
 FIXED_ADDRESSES := $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
-.PHONY: all demo test packages release dev thread coverage judge bench fuzz pictures format lint clean
+.PHONY: all demo test packages release dev thread coverage judge bench fuzz pictures docs format lint clean
 all: release
 
 # apt is asked only when a package is missing, so that a second run needs no network.
@@ -44,9 +45,9 @@ demo: release
 	@tools/demo.sh build/release/jali out/demo
 
 test: thread release dev
-	@$(FIXED_ADDRESSES) ctest --preset thread -j $(JOBS)
-	@ctest --preset release -j $(JOBS)
-	@ctest --preset dev -j $(JOBS)
+	@$(FIXED_ADDRESSES) ctest --preset thread --no-label-summary -j $(JOBS)
+	@ctest --preset release --no-label-summary -j $(JOBS)
+	@ctest --preset dev --no-label-summary -j $(JOBS)
 
 judge: release
 	$(call install,$(JUDGE_PACKAGES))
@@ -72,6 +73,10 @@ coverage: packages
 pictures: release
 	$(call install,unzip)
 	@tools/pictures.sh build/release/jali docs/pictures
+
+# Renew the blocks of docs/cli.md that show what the program says.
+docs: release
+	@tools/help.sh build/release/jali docs/cli.md >build/cli.md && mv build/cli.md docs/cli.md
 
 SOURCES = $(shell git ls-files '*.c' '*.h')
 

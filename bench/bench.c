@@ -8,13 +8,15 @@
 //   --runs     the median of at most so many (5); fewer once a case has taken 5 s
 //   CASE       names from the first column; all by default
 //
-// Widths: 70 mm for 1000 px, as in docs/results.md, so the default works on 2800 x 2800 px where the input
-// has 1000 x 1000; from 100 Mpixel on a working pixel has the input pixel's size, as that many are a choice,
-// not an accident. ns a pixel counts the pixels of the grid that the case works on. Peak is what the case
-// holds beyond what it starts from. The peer is Leptonica, one thread, when it was found at configure time.
+// Operators run on the input's own grid (--paper), the image stages on that and on the default's, the solid
+// on the default's. Widths: 70 mm for 1000 px, as in docs/results.md, so the default works on 2800 x 2800 px
+// where the input has 1000 x 1000; from 50 Mpixel on a working pixel is as large as an input pixel. ns a
+// pixel counts the pixels of the grid that the case works on. Peak is what the case holds beyond what it
+// starts from. The peer is Leptonica, one thread, when it was found at configure time.
 #include "bench.h"
 
 #include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -147,7 +149,7 @@ static jali_status measure_row(const settings *set, const bench_case *c, bool pa
     printf("| %-15s | %-14s | %-7s | %6.1f | %6.1f | %10.3f | %8.3f | %7.1f |", c->name, s->name,
            paper ? "--paper" : "default", 1e-6 * s->picture.width_px * s->picture.height_px, 1e-6 * working,
            ms, 1e6 * ms / pixels_of(s, c), peak_mb);
-    double other = c->peer && !paper ? c->peer(s, c->size, MIN(set->runs, 5)) : -1;
+    double other = c->peer ? c->peer(s, c->size, MIN(set->runs, 5)) : -1;
     if (other >= 0)
         printf(" %10.3f |\n", other);
     else
@@ -163,7 +165,7 @@ static jali_status measure_way(jali_context *ctx, const settings *set, bool pape
     TRY(prepare(ctx, paper, s));
     for (int32_t i = 0; i < bench_case_count; i++) {
         const bench_case *c = &bench_cases[i];
-        if (!is_wanted(set, c) || (paper && !c->both_ways)) continue;
+        if (!is_wanted(set, c) || !(c->grids & (paper ? ON_INPUT : ON_WORKING))) continue;
         if (c->solid && !carved) TRY(prepare_solid(ctx, s));
         carved = carved || c->solid;
         TRY(measure_row(set, c, paper, s));
@@ -194,9 +196,7 @@ static jali_status measure_sample(jali_context *ctx, const settings *set, const 
     jali_status status;
     jali_bitmap drawn = {0};
     jali_bytes png = {0};
-    double side = 1000;
-    while (side * side < 1e6 * mpixel) side += side < 10000 ? 100 : 1000;
-    TRY(jali_sample(ctx, name, (int32_t)side, &drawn));
+    TRY(jali_sample(ctx, name, (int32_t)lround(sqrt(1e6 * mpixel)), &drawn));
     TRY(jali_bitmap_png(ctx, &drawn, 0, &png));
     jali_bitmap_free(ctx, &drawn);
     return measure_picture(ctx, set, name, &png);

@@ -20,14 +20,17 @@ typedef struct subject {
     jali_mesh mesh;
 } subject;
 
+/// On which grid a case is measured: the default's, or the input's own pixels.
+enum { ON_WORKING = 1, ON_INPUT = 2 };
+
 /// One thing to measure.
 typedef struct bench_case {
     const char *name;
     jali_status (*run)(jali_context *ctx, subject *s, int32_t size); // once; frees what it makes
     double (*peer)(subject *s, int32_t size, int32_t runs);          // ms of another library, or NULL
     int32_t size;                                                    // handed to both
-    bool solid;                                                      // needs mask, contours and mesh
-    bool both_ways;                                                  // differs between default and --paper
+    uint32_t grids;
+    bool solid; // needs mask, contours and mesh
 } bench_case;
 
 extern const bench_case bench_cases[];

@@ -68,7 +68,7 @@ int main(int argc, char **argv)
     copt.threads = 1;
     for (int i = 1; i < argc; i++) {
         if (!strcmp(argv[i], "--threads") && i + 1 < argc)
-            copt.threads = atoi(argv[++i]);
+            copt.threads = (int32_t)strtol(argv[++i], NULL, 10);
         else if (!strcmp(argv[i], "--only") && i + 1 < argc)
             only = argv[++i];
         else

@@ -7,9 +7,9 @@ jali=$1 out=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
-for name in mask girih; do
-    "$jali" sample "$name" --size 512 -o "$out/$name.png" --force-overwrite --quiet
-    "$jali" carve "$out/$name.png" --width 70 --corner 3 --pixel 0.05 --quiet --force-overwrite \
+for name in tree girih; do
+    "$jali" sample "$name" --size 1000 -o "$out/$name.png" --force-overwrite --quiet
+    "$jali" carve "$out/$name.png" --width 70 --corner 3 --quiet --force-overwrite \
         -o "$out/$name-plate.png" -o "$work/$name.3mf"
     unzip -q -p "$work/$name.3mf" Metadata/thumbnail.png >"$out/$name-solid.png"
 done

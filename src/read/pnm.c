@@ -126,7 +126,7 @@ static uint32_t widened(uint32_t sample, uint32_t top)
 
 static jali_status read_pixel(pnm *file, uint8_t *grey)
 {
-    jali_status status;
+    jali_status status = JALI_OK;
     uint32_t sample[3] = {0}, top = file->top;
     bool coloured = file->kind % 3 == 0;
     for (int32_t i = 0; i < (coloured ? 3 : 1); i++) TRY(read_sample(file, &sample[i]));

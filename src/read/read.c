@@ -87,7 +87,7 @@ static const picture_type *type_of(const uint8_t *bytes, size_t size)
 {
     for (size_t i = 0; i < sizeof picture_types / sizeof *picture_types; i++) {
         const picture_type *type = &picture_types[i];
-        if (size >= (size_t)(type->offset + type->magic_size) &&
+        if (size >= (size_t)type->offset + (size_t)type->magic_size &&
             memcmp(bytes + type->offset, type->magic, (size_t)type->magic_size) == 0)
             return type;
     }
