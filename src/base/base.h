@@ -11,8 +11,7 @@
 #define MAX(a, b) ((a) > (b) ? (a) : (b))
 
 // Functions marked so are compiled for several instruction sets and chosen at load time; the plain one is the
-// portable twin. Sanitizers cannot start through such a choice, so they get the plain one alone. Static functions
-// only: gcc 12 lets the choice of others out of the shared library, hidden or not.
+// portable twin. Sanitizers cannot start through such a choice, so they get the plain one alone.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(JALI_PORTABLE)
 #define VECTORISED __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else

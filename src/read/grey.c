@@ -3,7 +3,7 @@
 // Checked: tests/test_read.c: against the formulas in floating point; four quarter turns are nothing.
 #include "read/read.h"
 
-VECTORISED static void grey_samples(const uint8_t *samples, int32_t channels, int32_t width, uint8_t *grey)
+VECTORISED void grey_row(const uint8_t *samples, int32_t channels, int32_t width, uint8_t *grey)
 {
     switch (channels) {
     case 1: memcpy(grey, samples, (size_t)width); break;
@@ -21,11 +21,6 @@ VECTORISED static void grey_samples(const uint8_t *samples, int32_t channels, in
             grey[x] = (uint8_t)over_white(luma(s[0], s[1], s[2]), s[3], 255);
         }
     }
-}
-
-void grey_row(const uint8_t *samples, int32_t channels, int32_t width, uint8_t *grey)
-{
-    grey_samples(samples, channels, width, grey);
 }
 
 jali_status crop_picture(jali_context *ctx, jali_picture *picture, const int32_t crop_px[4])
