@@ -309,7 +309,7 @@ static jali_status prepare_tone(jali_context *ctx, stamping *s, bool white, jali
 {
     jali_status status;
     tone *t = &s->side[white];
-    draw_disc(t);
+    if (t->disc.size <= WINDOW_MAX_ELEMENT) draw_disc(t); // wider ones are not searched with
     TRY(medial_axis(ctx, &s->drawing, white, true, t->disc.size / 2 + 1, &t->axis));
     TRY(jali_bitmap_create(ctx, s->drawing.width_px, s->drawing.height_px, &t->open));
     TRY(white ? open_by(ctx, &s->drawing, &t->disc, true, scratch, &t->open)
