@@ -149,7 +149,7 @@ static uint64_t hash_of(const jali_bitmap *a)
 static void keep_or_drop(jali_context *ctx, optimising *o, jali_details *white, jali_details *black, jali_bitmap *conflict)
 {
     jali_optimised *r = o->result;
-    if (o->opt.details && r->round_count == 1) {
+    if (o->opt.details && r->round_count == 1 && !r->conflict.word) {
         r->white = *white;
         r->black = *black;
         r->conflict = *conflict;
