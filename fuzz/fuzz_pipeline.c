@@ -1,0 +1,92 @@
+// Any bytes as a bitmap and parameters, through the whole pipeline: every promise is asserted on the result.
+//
+// Layout: 12 bytes of parameters (see settings), then pixels, a bit each; missing ones repeat a noise of the last byte.
+#include "model.h"
+#include "plain.h"
+
+#include <jali/jali.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { PARAMETERS = 12, MOST_SIDE_PX = 96 };
+
+static uint8_t *grey_of(const uint8_t *data, size_t size, int32_t width, int32_t height)
+{
+    uint8_t *grey = malloc((size_t)width * (size_t)height);
+    uint32_t noise = size ? data[size - 1] : 0;
+    for (int32_t i = 0; i < width * height; i++) {
+        noise = noise * 1664525 + 1013904223;
+        bool white = (size_t)(i / 8) < size ? data[i / 8] >> i % 8 & 1 : noise >> 31;
+        grey[i] = white ? 255 : 0;
+    }
+    return grey;
+}
+
+// The longer side is 2 to 33 times the narrower width: from a picture of which almost nothing prints to one of which
+// all does; the working grid stays below some 500 px.
+static jali_options settings(const uint8_t *p, int32_t width_px, int32_t height_px)
+{
+    jali_options opt = jali_defaults();
+    opt.optimise.phi_e_mm = 0.05 * (p[2] % 5);
+    opt.optimise.phi_s_mm = 0.1 + 0.05 * (p[3] % 12);
+    opt.optimise.phi_v_mm = 0.1 + 0.05 * (p[4] % 12);
+    opt.optimise.epsilon_mm = 0.25 * (p[5] % 20);
+    opt.optimise.paper = p[6] & 1;
+    opt.predict = p[6] >> 1 & 1;
+    opt.optimise.details = p[6] >> 2 & 1;
+    opt.recall = p[6] >> 3 & 1;
+    double longer_mm = fmin(opt.optimise.phi_s_mm, opt.optimise.phi_v_mm) * (2 + p[7] % 32);
+    opt.place.width_mm = longer_mm * width_px / (width_px > height_px ? width_px : height_px);
+    opt.place.frame_mm = p[8] % 4 ? 0.5 * (p[8] % 4) : 0;
+    opt.carve.hole_diameter_mm = p[9] % 3 == 1 ? 1 + p[9] % 5 : 0;
+    opt.carve.corner_radius_mm = p[10] % 3 == 1 ? 0.5 : 0;
+    return opt;
+}
+
+static void require_read_back(jali_context *ctx, const jali_mesh *mesh, jali_format format)
+{
+    jali_bytes bytes = {0};
+    jali_write_options plain_file = {.no_thumbnail = true};
+    REQUIRE(jali_write_bytes(ctx, format, &(jali_product){.mesh = mesh}, &plain_file, &bytes) == JALI_OK);
+    REQUIRE(jali_check_readback(ctx, bytes.data, bytes.size, mesh) == JALI_OK);
+    jali_bytes_free(ctx, &bytes);
+}
+
+static void require_promises(jali_context *ctx, const jali_options *opt, const jali_result *r)
+{
+    plain mask = plain_of(&r->optimised.mask);
+    REQUIRE(plain_pieces(&mask, true, 4) == 1);
+    plain_free(&mask);
+    REQUIRE(r->printable && r->closed && r->check.solid && r->check.pieces == 1);
+    // The paper rounds its kernels, also downwards: what keeps to them may be too thin to print, and the result says so.
+    REQUIRE(r->one_piece || (opt->optimise.paper && opt->predict && r->result_print.pieces != 1));
+    REQUIRE(!r->one_piece || !opt->predict || r->result_print.pieces == 1);
+    require_sound(&r->mesh);
+    require_read_back(ctx, &r->mesh, JALI_FORMAT_STL);
+    require_read_back(ctx, &r->mesh, JALI_FORMAT_3MF);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    if (size < PARAMETERS) return -1;
+    jali_context_options own = jali_context_defaults();
+    own.threads = 1 + data[11] % 3;
+    own.max_memory_bytes = (uint64_t)1 << 30;
+    jali_context *ctx;
+    REQUIRE(jali_context_create(&own, &ctx) == JALI_OK);
+    int32_t width = 1 + data[0] % MOST_SIDE_PX, height = 1 + data[1] % MOST_SIDE_PX;
+    jali_picture picture = {width, height, grey_of(data + PARAMETERS, size - PARAMETERS, width, height)};
+    jali_options opt = settings(data, width, height);
+    jali_result result;
+    jali_status status = jali_make(ctx, &picture, &opt, &result);
+    if (status == JALI_OK) require_promises(ctx, &opt, &result);
+    else {
+        REQUIRE(status == JALI_BAD_INPUT || status == JALI_BAD_VALUE || status == JALI_NO_RESULT || status == JALI_LIMIT);
+        REQUIRE(strlen(jali_message(ctx)) > 0);
+        REQUIRE(result.mesh.vertex == NULL && result.optimised.mask.word == NULL);
+    }
+    jali_result_free(ctx, &result);
+    free(picture.grey);
+    jali_context_free(ctx);
+    return 0;
+}
