@@ -361,7 +361,7 @@ static int32_t plan_windows(stamping *s, int32_t solid, int32_t hollow)
         int32_t left = WINDOW_COLUMNS / 2 - t->fit.size / 2, top = s->wide_rows / 2 - t->fit.size / 2;
         for (int32_t k = 0; k < s->wide_rows; k++) {
             uint64_t disc = k >= top && k < top + t->fit.size ? t->row[k - top] : 0;
-            rest.left[k] = ~(disc << left);
+            rest.left[k] = left == 64 ? ~UINT64_C(0) : ~(disc << left); // a disc of one pixel lies in the right half alone
             rest.right[k] = ~(disc >> (64 - left));
         }
         window_erode(&rest, s->wide_rows, &s->side[!white].fit, &t->blocked);
