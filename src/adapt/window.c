@@ -24,11 +24,8 @@ window_element window_element_of(const element *e)
 }
 
 // Whole bytes by unaligned reads, the rest by a shift: the columns asked for lie in 17 bytes.
-VECTORISED void window_read(const jali_bitmap *a, int32_t x0, int32_t y0, int32_t rows, window *w)
+VECTORISED static void read_rows(const char *byte, int64_t pitch, int32_t bit, int32_t rows, window *w)
 {
-    const char *byte = (const char *)(a->word + (int64_t)y0 * a->stride) + (x0 >> 3);
-    int32_t bit = x0 & 7;
-    int64_t pitch = a->stride * (int64_t)sizeof *a->word;
     for (int32_t k = 0; k < rows; k++, byte += pitch) {
         uint64_t low, high, last;
         memcpy(&low, byte, sizeof low);
@@ -37,6 +34,12 @@ VECTORISED void window_read(const jali_bitmap *a, int32_t x0, int32_t y0, int32_
         w->left[k] = low >> bit | (high << 1) << (63 - bit);
         w->right[k] = bit ? high >> bit | last >> 56 << (64 - bit) : high;
     }
+}
+
+void window_read(const jali_bitmap *a, int32_t x0, int32_t y0, int32_t rows, window *w)
+{
+    const char *byte = (const char *)(a->word + (int64_t)y0 * a->stride) + (x0 >> 3);
+    read_rows(byte, a->stride * (int64_t)sizeof *a->word, x0 & 7, rows, w);
 }
 
 void window_flip(jali_bitmap *a, int32_t x0, int32_t y0, int32_t rows, const window *change)
