@@ -1,5 +1,6 @@
 // Bitmaps and everything on them, against the definitions.
 #include "testing.h"
+#include "plain.h"
 #include "raster/raster.h"
 
 static bool pixel(const jali_bitmap *a, int32_t x, int32_t y, bool outside)
@@ -15,35 +16,52 @@ static bool in_element(const element *e, int32_t dx, int32_t dy)
     return v < e->rows && u <= 2 * e->half[v] - even;
 }
 
-static bool eroded_pixel(const jali_bitmap *a, const element *e, int32_t x, int32_t y, bool outside)
+/// The element's pixels as a list, from its definition.
+typedef struct offsets {
+    int32_t count;
+    int16_t (*at)[2]; // dx, dy
+} offsets;
+
+static offsets offsets_of(const element *e)
 {
-    for (int32_t dy = -e->size; dy <= e->size; dy++)
-        for (int32_t dx = -e->size; dx <= e->size; dx++)
-            if (in_element(e, dx, dy) && !pixel(a, x + dx, y + dy, outside)) return false;
+    offsets o = {0, malloc((size_t)(4 * e->size * e->size) * sizeof *o.at)};
+    for (int32_t dy = -e->size; dy < e->size; dy++)
+        for (int32_t dx = -e->size; dx < e->size; dx++)
+            if (in_element(e, dx, dy)) {
+                o.at[o.count][0] = (int16_t)dx;
+                o.at[o.count++][1] = (int16_t)dy;
+            }
+    return o;
+}
+
+static bool eroded_pixel(const jali_bitmap *a, const offsets *o, int32_t x, int32_t y, bool outside)
+{
+    for (int32_t k = 0; k < o->count; k++)
+        if (!pixel(a, x + o->at[k][0], y + o->at[k][1], outside)) return false;
     return true;
 }
 
-static bool dilated_pixel(const jali_bitmap *a, const element *e, int32_t x, int32_t y, bool outside)
+static bool dilated_pixel(const jali_bitmap *a, const offsets *o, int32_t x, int32_t y, bool outside)
 {
-    for (int32_t dy = -e->size; dy <= e->size; dy++)
-        for (int32_t dx = -e->size; dx <= e->size; dx++)
-            if (in_element(e, dx, dy) && pixel(a, x - dx, y - dy, outside)) return true;
+    for (int32_t k = 0; k < o->count; k++)
+        if (pixel(a, x - o->at[k][0], y - o->at[k][1], outside)) return true;
     return false;
 }
 
 static void check_morphology(const jali_bitmap *a, const element *e, bool outside)
 {
     jali_bitmap got, scratch;
+    offsets o = offsets_of(e);
     CHECK_OK(jali_bitmap_create(ctx, a->width_px, a->height_px, &got));
     CHECK_OK(jali_bitmap_create(ctx, a->width_px, a->height_px, &scratch));
     CHECK_OK(erode(ctx, a, e, outside, &got));
     for (int32_t y = 0; y < a->height_px; y++)
         for (int32_t x = 0; x < a->width_px; x++)
-            CHECK(jali_bitmap_get(&got, x, y) == eroded_pixel(a, e, x, y, outside));
+            CHECK(jali_bitmap_get(&got, x, y) == eroded_pixel(a, &o, x, y, outside));
     CHECK_OK(dilate(ctx, a, e, outside, &got));
     for (int32_t y = 0; y < a->height_px; y++)
         for (int32_t x = 0; x < a->width_px; x++)
-            CHECK(jali_bitmap_get(&got, x, y) == dilated_pixel(a, e, x, y, outside));
+            CHECK(jali_bitmap_get(&got, x, y) == dilated_pixel(a, &o, x, y, outside));
     CHECK_OK(open_by(ctx, a, e, outside, &scratch, &got));
     CHECK_INT(count_combined(ctx, RULE_AND_NOT, &got, a), 0);
     jali_bitmap again;
@@ -52,6 +70,7 @@ static void check_morphology(const jali_bitmap *a, const element *e, bool outsid
     CHECK(same_bitmap(&got, &again)); // idempotent
     CHECK_OK(close_by(ctx, a, e, outside, &scratch, &again));
     CHECK_INT(count_combined(ctx, RULE_AND_NOT, a, &again), 0);
+    free(o.at);
     jali_bitmap_free(ctx, &again);
     jali_bitmap_free(ctx, &got);
     jali_bitmap_free(ctx, &scratch);
@@ -85,16 +104,18 @@ TEST(wide_elements_cross_words)
         jali_bitmap a, eroded;
         CHECK_OK(jali_bitmap_create(ctx, 600, 300, &a));
         fill(ctx, &a, true);
-        for (int32_t i = 0; i < 3; i++)
-            jali_bitmap_set(&a, (int32_t)(next_random(&seed) % 600), (int32_t)(next_random(&seed) % 300), false);
+        int32_t hole[3][2];
+        for (int32_t i = 0; i < 3; i++) {
+            hole[i][0] = (int32_t)(next_random(&seed) % 600);
+            hole[i][1] = (int32_t)(next_random(&seed) % 300);
+            jali_bitmap_set(&a, hole[i][0], hole[i][1], false);
+        }
         CHECK_OK(jali_bitmap_create(ctx, 600, 300, &eroded));
         CHECK_OK(erode(ctx, &a, &e, true, &eroded));
-        for (int32_t y = 0; y < 300; y += 7)
-            for (int32_t x = 0; x < 600; x += 3) {
+        for (int32_t y = 0; y < 300; y++)
+            for (int32_t x = 0; x < 600; x++) {
                 bool hit = false;
-                for (int32_t v = 0; v < 300; v++)
-                    for (int32_t u = 0; u < 600; u++)
-                        if (!hit && !jali_bitmap_get(&a, u, v) && in_element(&e, u - x, v - y)) hit = true;
+                for (int32_t i = 0; i < 3; i++) hit |= in_element(&e, hole[i][0] - x, hole[i][1] - y);
                 CHECK(jali_bitmap_get(&eroded, x, y) == !hit);
             }
         jali_bitmap_free(ctx, &a);
@@ -123,34 +144,6 @@ TEST(a_bar_as_wide_as_the_disc_survives_and_a_thinner_one_does_not)
     }
 }
 
-// Flood fill by repeated sweeps: slow, plain, right.
-static int32_t flood_labels(const jali_bitmap *a, bool white, int32_t connectivity, int32_t *label)
-{
-    int32_t w = a->width_px, h = a->height_px, count = 0;
-    for (int32_t i = 0; i < w * h; i++) label[i] = -1;
-    for (int32_t start = 0; start < w * h; start++) {
-        if (label[start] >= 0 || jali_bitmap_get(a, start % w, start / w) != white) continue;
-        label[start] = count;
-        for (bool grown = true; grown;) {
-            grown = false;
-            for (int32_t y = 0; y < h; y++)
-                for (int32_t x = 0; x < w; x++) {
-                    if (label[y * w + x] >= 0 || jali_bitmap_get(a, x, y) != white) continue;
-                    for (int32_t dy = -1; dy <= 1; dy++)
-                        for (int32_t dx = -1; dx <= 1; dx++) {
-                            if (connectivity == 4 && dx && dy) continue;
-                            int32_t u = x + dx, v = y + dy;
-                            if (u < 0 || v < 0 || u >= w || v >= h || label[v * w + u] != count) continue;
-                            label[y * w + x] = count;
-                            grown = true;
-                        }
-                }
-        }
-        count++;
-    }
-    return count;
-}
-
 TEST(components_are_those_of_a_flood_fill)
 {
     uint64_t seed = 3;
@@ -158,12 +151,13 @@ TEST(components_are_those_of_a_flood_fill)
     for (int32_t round = 0; round < 40; round++) {
         int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 99, h = 1 + (int32_t)(next_random(&seed) >> 40) % 39;
         jali_bitmap a = random_bitmap(&seed, w, h, 20 + round * 3 / 2);
+        plain p = plain_of(&a);
         for (int32_t variant = 0; variant < 4; variant++) {
             bool white = variant % 2;
             int32_t connectivity = variant / 2 ? 8 : 4;
             components c;
             CHECK_OK(label_components(ctx, &a, white, connectivity, &c));
-            CHECK_INT(c.count, flood_labels(&a, white, connectivity, label));
+            CHECK_INT(c.count, plain_label(&p, white, connectivity, label));
             for (int32_t y = 0; y < h; y++)
                 for (int32_t x = 0; x < w; x++) {
                     int32_t run = run_at(&c, x, y);
@@ -171,6 +165,7 @@ TEST(components_are_those_of_a_flood_fill)
                 }
             components_free(ctx, &c);
         }
+        plain_free(&p);
         jali_bitmap_free(ctx, &a);
     }
 }
@@ -213,16 +208,64 @@ TEST(medial_axis_is_the_ridge_of_the_chessboard_distance)
     }
 }
 
+TEST(distances_are_those_of_all_pairs)
+{
+    static int32_t squared[130 * 40];
+    uint64_t seed = 17;
+    for (int32_t round = 0; round < 60; round++) {
+        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 130, h = 1 + (int32_t)(next_random(&seed) >> 40) % 40;
+        int32_t first = round % 3 ? (int32_t)(next_random(&seed) >> 40) % h : 0;
+        int32_t rows = round % 3 ? 1 + (int32_t)(next_random(&seed) >> 40) % (h - first) : h;
+        jali_bitmap a = random_bitmap(&seed, w, h, round % 10 == 0 ? 0 : 1 + round % 5 * 6);
+        CHECK_OK(squared_distances(ctx, &a, true, first, rows, squared));
+        if (round % 7 == 6) {
+            invert(ctx, &a, &a);
+            memset(squared, 0xff, sizeof squared);
+            CHECK_OK(squared_distances(ctx, &a, false, first, rows, squared));
+            invert(ctx, &a, &a);
+        }
+        for (int32_t y = 0; y < rows; y++)
+            for (int32_t x = 0; x < w; x += 1 + round % 4) {
+                int32_t best = DISTANCE_NONE;
+                for (int32_t v = 0; v < h; v++)
+                    for (int32_t u = next_white(a.word + v * a.stride, 0, w, 0); u < w;
+                         u = next_white(a.word + v * a.stride, u + 1, w, 0))
+                        best = MIN(best, (u - x) * (u - x) + (v - first - y) * (v - first - y));
+                CHECK(squared[y * w + x] == best);
+            }
+        jali_bitmap_free(ctx, &a);
+    }
+}
+
+TEST(threads_do_not_change_distances)
+{
+    uint64_t seed = 19;
+    jali_context *by_threads[3];
+    int32_t *squared[3];
+    jali_bitmap a = random_bitmap(&seed, 300, 200, 1);
+    open_thread_contexts(by_threads);
+    for (int32_t i = 0; i < 3; i++) {
+        squared[i] = malloc(300 * 200 * sizeof *squared[i]);
+        CHECK_INT(squared_distances(by_threads[i], &a, true, 0, 200, squared[i]), JALI_OK);
+        CHECK(memcmp(squared[i], squared[0], 300 * 200 * sizeof *squared[i]) == 0);
+    }
+    for (int32_t i = 0; i < 3; i++) free(squared[i]);
+    close_thread_contexts(by_threads);
+    jali_bitmap_free(ctx, &a);
+}
+
 static jali_status open_and_label(jali_context *limited, void *data)
 {
     jali_status status;
     jali_bitmap scratch = {0};
     element e = {0};
     components c = {0};
+    int32_t row[70];
     TRY(element_disc(limited, 5, &e));
     TRY(jali_bitmap_copy(limited, data, &scratch));
     TRY(open_by(limited, data, &e, true, &scratch, &scratch));
     TRY(label_components(limited, data, true, 4, &c));
+    TRY(squared_distances(limited, data, true, 0, 1, row));
 done:
     components_free(limited, &c);
     element_free(limited, &e);
@@ -246,6 +289,8 @@ int main(void)
         cmocka_unit_test(a_bar_as_wide_as_the_disc_survives_and_a_thinner_one_does_not),
         cmocka_unit_test(components_are_those_of_a_flood_fill),
         cmocka_unit_test(medial_axis_is_the_ridge_of_the_chessboard_distance),
+        cmocka_unit_test(distances_are_those_of_all_pairs),
+        cmocka_unit_test(threads_do_not_change_distances),
         cmocka_unit_test(every_refused_allocation_is_reported),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);

@@ -77,6 +77,20 @@ void resize_nearest(jali_context *ctx, const jali_bitmap *src, int32_t left, int
 jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, int32_t rounds,
                         jali_bitmap *axis);
 
+// --- Distance (distance.c)
+
+enum { DISTANCE_NONE = INT32_MAX }; // there is no such pixel
+
+/// The squared Euclidean distance from each pixel's centre to that of the nearest pixel of a tone; pixels beyond the
+/// bitmap have none.
+///   in     first_row, rows   the band of rows that is wanted; the whole bitmap is looked at all the same
+///   out    squared           [rows * width_px]; DISTANCE_NONE where the bitmap has no pixel of the tone, and
+///                            DISTANCE_NONE - 1 at most (46,340 px)
+///   fails  JALI_NO_MEMORY
+///   cost   O(pixels) time, two looks at each; 4 bytes a pixel of the band and 384 a column
+jali_status squared_distances(jali_context *ctx, const jali_bitmap *a, bool white, int32_t first_row, int32_t rows,
+                              int32_t *squared);
+
 // --- Components (components.c)
 
 /// First column x .. end whose bit in the row, xored with flip, is set; `end` when there is none.
