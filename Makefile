@@ -20,7 +20,7 @@ BENCH ?=
 # The thread sanitizer of gcc 12 cannot start under more than 28 bits of address randomisation.
 FIXED_ADDRESSES := $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
-.PHONY: all demo test packages release dev thread coverage judge bench fuzz pictures docs format lint clean
+.PHONY: results all demo test packages release dev thread coverage judge bench fuzz pictures docs format lint clean
 all: release
 
 # apt is asked only when a package is missing, so that a second run needs no network.
@@ -73,6 +73,10 @@ coverage: packages
 pictures: release
 	$(call install,unzip)
 	@tools/pictures.sh build/release/jali docs/pictures
+
+# The tables of docs/results.md anew, from the pictures beside the project.
+results: release
+	@tools/results.sh build/release/bench
 
 # Renew the blocks of docs/cli.md that show what the program says.
 docs: release

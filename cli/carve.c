@@ -124,7 +124,7 @@ static jali_status make(jali_context *ctx, const settings *set, bool solid)
     jali_result result = {0};
     settings own = *set;
     own.make.solid = solid;
-    own.make.optimise.details = set->report != NULL;
+    own.make.optimise.details = set->report || set->json;
     TRY(load_picture(ctx, &own, &picture));
     TRY(jali_make(ctx, &picture, &own.make, &result));
     TRY(write_everything(ctx, &own, &picture, &result));
