@@ -12,7 +12,7 @@ seeds=$corpus/seeds
 mkdir -p "$seeds"
 for name in rings checkerboard lettering; do
     "$build/jali" sample "$name" --size 48 -o "$seeds/$name.png" --force-overwrite --quiet
-    "$build/jali" carve "$seeds/$name.png" --width 8 --pixel 0.1 --no-predict --quiet --force-overwrite \
+    "$build/jali" carve "$seeds/$name.png" --width 4 --pixel 0.1 --no-predict --quiet --force-overwrite \
         -o "$seeds/$name.stl" -o "$seeds/$name.3mf" || [ $? = 3 ]
 done
 
