@@ -5,7 +5,7 @@
 #   make bench      times and memory, stage by stage        make pictures   draw docs/pictures again
 #   make fuzz       each fuzzer for FUZZ_SECONDS            make format     lay the code out
 #   make coverage   what the tests reach                    make lint       clang-tidy, cppcheck, layout
-#   make docs       renew what docs/cli.md quotes
+#   make docs       renew what docs/cli.md quotes           make results    the tables of docs/results.md
 PACKAGES := cmake ninja-build gcc g++ pkg-config libpng-dev libjpeg62-turbo-dev libwebp-dev librsvg2-dev \
             libcairo2-dev libdeflate-dev libzip-dev libexpat1-dev libjansson-dev libcmocka-dev
 FUZZ_PACKAGES     := clang libclang-rt-dev
@@ -20,7 +20,7 @@ BENCH ?=
 # The thread sanitizer of gcc 12 cannot start under more than 28 bits of address randomisation.
 FIXED_ADDRESSES := $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
-.PHONY: results all demo test packages release dev thread coverage judge bench fuzz pictures docs format lint clean
+.PHONY: all demo test packages release dev thread coverage judge bench results fuzz pictures docs format lint clean
 all: release
 
 # apt is asked only when a package is missing, so that a second run needs no network.
