@@ -7,6 +7,7 @@
 // with); phi 0.1 / 0.3 / 0.5 mm. Exit 1 when a promise is not kept.
 #include <jali/jali.h>
 
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,6 +64,8 @@ static double image_seconds(const jali_result *r)
 
 int main(int argc, char **argv)
 {
+    mallopt(M_MMAP_THRESHOLD, 1 << 28); // as the command line does
+    mallopt(M_TRIM_THRESHOLD, 1 << 28);
     const char *folder = "../shared/data/images", *only = NULL;
     jali_context_options copt = jali_context_defaults();
     copt.threads = 1;

@@ -4,6 +4,7 @@
 #include "options.h"
 #include "outputs.h"
 
+#include <malloc.h>
 #include <stdio.h>
 
 enum {
@@ -79,6 +80,9 @@ static int unknown_verb(const char *typed)
 
 int main(int argc, char **argv)
 {
+    // Bitmaps of some MB come and go: keep their pages instead of asking the kernel for cleared ones each time.
+    mallopt(M_MMAP_THRESHOLD, 1 << 28);
+    mallopt(M_TRIM_THRESHOLD, 1 << 28);
     char sentence[SENTENCE_BYTES];
     settings set = default_settings();
     if (argc < 2) return refuse("what shall be done? \"jali --help\" lists what there is");

@@ -2,7 +2,7 @@
 //
 // Source:  Binary Image Carving for 3D Printing, section 4.3, Eqs. 2 and 3.
 // Method:  components of the removed pixels as runs; the ring around each (3 x 3 dilation minus itself, in the
-//          other tone) is gathered in a window and its parts are counted by flooding 64 pixels at a time.
+//          other tone) is gathered in a window and its parts are counted as runs, in one pass.
 // Limits:  a detail that crosses the bitmap's border has the border as part of its ring only where the
 //          surroundings have the other tone.
 // Checked: tests/test_adapt.c: bars, combs, rings; random pictures against the definition.
@@ -24,6 +24,11 @@ typedef struct detail {
     bool touches_own; // a neighbour of its tone is no detail: it hangs on something larger
 } detail;
 
+// A run of a ring's pixels; the parts are trees of runs.
+typedef struct ring_run {
+    int32_t x0, x1, parent;
+} ring_run;
+
 typedef struct sorting {
     const jali_bitmap *picture;
     bool white, outside_solid, isolated_matters;
@@ -32,8 +37,10 @@ typedef struct sorting {
     detail *detail;        // [c.count]
     int32_t *order;        // [c.run_count], runs by detail
     int32_t *row_of;       // [c.run_count]
-    uint64_t *window;      // three planes of scratch: the detail, its ring, the flood
+    uint64_t *window;      // two planes of scratch: the detail and its ring
     size_t window_capacity;
+    ring_run *run;         // of the ring
+    size_t run_capacity;
 } sorting;
 
 static jali_status gather_runs(jali_context *ctx, sorting *s)
@@ -97,7 +104,7 @@ static uint64_t *plane_row(const sorting *s, const frame *f, int32_t plane, int3
 // Plane 0: the detail. Plane 1: the pixels of the other tone around it. Also learns whether it touches its own.
 static void draw_ring(const sorting *s, const frame *f, detail *d)
 {
-    memset(s->window, 0, (size_t)(3 * (f->rows + 2) * f->pitch) * sizeof *s->window);
+    memset(s->window, 0, (size_t)(2 * (f->rows + 2) * f->pitch) * sizeof *s->window);
     jali_bitmap view = {0, 0, f->pitch, s->window + f->pitch + 1};
     for (int32_t k = d->first; k < d->first + d->count; k++) {
         int32_t run = s->order[k];
@@ -120,54 +127,49 @@ static void draw_ring(const sorting *s, const frame *f, detail *d)
     d->touches_own = own != 0;
 }
 
-// Flood the ring's part that holds the first set pixel and take it out. The ring's connectivity is its tone's.
-static void take_part(const sorting *s, const frame *f, int32_t seed_row, int32_t seed_word)
+static int32_t root_of(ring_run *run, int32_t i)
 {
-    uint64_t first = plane_row(s, f, 1, seed_row)[seed_word];
-    plane_row(s, f, 2, seed_row)[seed_word] = first & -first;
-    int32_t top = seed_row, bottom = seed_row;
-    bool diagonal = s->white; // white detail, black ring: 8-connected
-    for (bool grown = true; grown;) {
-        grown = false;
-        for (int32_t sweep = 0; sweep < 2; sweep++) {
-            int32_t low = MAX(top - 1, 0), high = MIN(bottom + 1, f->rows - 1);
-            for (int32_t k = low; k <= high; k++) {
-                int32_t y = sweep ? high + low - k : k;
-                const uint64_t *above = plane_row(s, f, 2, y - 1), *below = plane_row(s, f, 2, y + 1);
-                const uint64_t *ring = plane_row(s, f, 1, y);
-                uint64_t *flood = plane_row(s, f, 2, y);
-                for (int32_t i = 0; i < f->words; i++) {
-                    uint64_t vertical = above[i] | below[i], sides = diagonal ? vertical | flood[i] : flood[i];
-                    uint64_t left = flood[i - 1] | (diagonal ? above[i - 1] | below[i - 1] : 0);
-                    uint64_t right = flood[i + 1] | (diagonal ? above[i + 1] | below[i + 1] : 0);
-                    uint64_t next = (flood[i] | vertical | sides << 1 | sides >> 1 | left >> 63 | right << 63) & ring[i];
-                    if (next == flood[i]) continue;
-                    flood[i] = next;
-                    grown = true;
-                    top = MIN(top, y);
-                    bottom = MAX(bottom, y);
-                }
-            }
-        }
-    }
-    for (int32_t y = top; y <= bottom; y++)
-        for (int32_t i = 0; i < f->words; i++) {
-            plane_row(s, f, 1, y)[i] &= ~plane_row(s, f, 2, y)[i];
-            plane_row(s, f, 2, y)[i] = 0;
-        }
+    while (run[i].parent != i) i = run[i].parent = run[run[i].parent].parent;
+    return i;
 }
 
-// Parts of the ring, but no more than two: that is all the types ask.
-static int32_t count_parts(const sorting *s, const frame *f)
+// Join the runs first .. second-1 of one row with those of the next, second .. end-1; returns how many parts fewer
+// there are.
+static int32_t join_rows(ring_run *run, int32_t first, int32_t second, int32_t end, int32_t reach)
 {
-    int32_t parts = 0;
-    for (int32_t y = 0; y < f->rows; y++)
-        for (int32_t i = 0; i < f->words; i++)
-            while (plane_row(s, f, 1, y)[i]) {
-                if (++parts == 2) return parts;
-                take_part(s, f, y, i);
-            }
-    return parts;
+    int32_t fewer = 0;
+    for (int32_t i = first, j = second; i < second && j < end;) {
+        if (run[i].x0 < run[j].x1 + reach && run[j].x0 < run[i].x1 + reach) {
+            int32_t a = root_of(run, i), b = root_of(run, j);
+            run[MAX(a, b)].parent = MIN(a, b);
+            fewer += a != b;
+        }
+        if (run[i].x1 < run[j].x1) i++;
+        else j++;
+    }
+    return fewer;
+}
+
+// Connected parts of the ring, by its own tone's connectivity: runs row by row, joined with those of the row above.
+static jali_status count_parts(jali_context *ctx, sorting *s, const frame *f, int32_t *parts)
+{
+    int32_t width = f->words * 64, above = 0, first = 0, count = 0;
+    int32_t reach = s->white ? 1 : 0; // a white detail's ring is black: 8-connected
+    *parts = 0;
+    for (int32_t y = 0; y < f->rows; y++) {
+        const uint64_t *row = plane_row(s, f, 1, y);
+        for (int32_t x = next_white(row, 0, width, 0); x < width; count++) {
+            jali_status status = GROW(ctx, s->run, s->run_capacity, count + 1);
+            if (status != JALI_OK) return status;
+            int32_t end = next_white(row, x, width, ~UINT64_C(0));
+            s->run[count] = (ring_run){x, end, count};
+            x = next_white(row, end, width, 0);
+        }
+        *parts += count - first - join_rows(s->run, above, first, count, reach);
+        above = first;
+        first = count;
+    }
+    return JALI_OK;
 }
 
 static jali_status type_of(jali_context *ctx, sorting *s, detail *d, int32_t *type)
@@ -175,10 +177,13 @@ static jali_status type_of(jali_context *ctx, sorting *s, detail *d, int32_t *ty
     frame f = {(d->x0 - 1) & ~63, d->y0 - 1, 0, d->y1 - d->y0 + 2, 0};
     f.words = (d->x1 + 1 - f.x0 + 63) / 64;
     f.pitch = f.words + 2;
-    jali_status status = GROW(ctx, s->window, s->window_capacity, 3 * (f.rows + 2) * f.pitch);
+    int32_t parts;
+    jali_status status = GROW(ctx, s->window, s->window_capacity, 2 * (f.rows + 2) * f.pitch);
     if (status != JALI_OK) return status;
     draw_ring(s, &f, d);
-    if (count_parts(s, &f) > 1) *type = JALI_TYPE_A;
+    status = count_parts(ctx, s, &f, &parts);
+    if (status != JALI_OK) return status;
+    if (parts > 1) *type = JALI_TYPE_A;
     else if (d->axis_px > s->epsilon_px || (s->isolated_matters && !d->touches_own)) *type = JALI_TYPE_B;
     else *type = JALI_TYPE_C;
     return JALI_OK;
@@ -234,5 +239,6 @@ done:
     release(ctx, s.order);
     release(ctx, s.row_of);
     release(ctx, s.window);
+    release(ctx, s.run);
     return status;
 }

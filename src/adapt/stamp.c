@@ -149,7 +149,7 @@ static void disc_and_after(const stamping *s, int32_t x0, int32_t y0, bool white
 
 // Whether the change leaves too many pixels that no disc of their new tone covers: they would have to go again.
 // What was covered stays covered, for the tone only gains.
-static bool leaves_thin(const stamping *s, const window *change, int32_t x, int32_t y, bool white)
+VECTORISED static bool leaves_thin(const stamping *s, const window *change, int32_t x, int32_t y, bool white)
 {
     window own, fits, covered;
     int32_t first = (s->wide_rows - s->rows) / 2;

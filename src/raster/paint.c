@@ -15,17 +15,18 @@ void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white)
     }
 }
 
+VECTORISED static int32_t count_bits(const uint64_t *row, int32_t x0, int32_t x1)
+{
+    int32_t first = x0 >> 6, last = (x1 - 1) >> 6, count = 0;
+    uint64_t head = ~UINT64_C(0) << (x0 & 63), tail = ~UINT64_C(0) >> (63 - ((x1 - 1) & 63));
+    if (first == last) return __builtin_popcountll(row[first] & head & tail);
+    for (int32_t i = first + 1; i < last; i++) count += __builtin_popcountll(row[i]);
+    return count + __builtin_popcountll(row[first] & head) + __builtin_popcountll(row[last] & tail);
+}
+
 int32_t count_run(const jali_bitmap *a, int32_t y, int32_t x0, int32_t x1)
 {
-    const uint64_t *row = a->word + (int64_t)y * a->stride;
-    int32_t count = 0;
-    for (int32_t i = x0 >> 6; i <= (x1 - 1) >> 6; i++) {
-        uint64_t mask = ~UINT64_C(0);
-        if (i == x0 >> 6) mask &= ~UINT64_C(0) << (x0 & 63);
-        if (i == (x1 - 1) >> 6) mask &= ~UINT64_C(0) >> (63 - ((x1 - 1) & 63));
-        count += __builtin_popcountll(row[i] & mask);
-    }
-    return count;
+    return count_bits(a->word + (int64_t)y * a->stride, x0, x1);
 }
 
 uint64_t window_word(const jali_bitmap *a, int32_t x, int32_t y, bool outside)
