@@ -30,7 +30,8 @@ static jali_options settings(const uint8_t *p, int32_t width_px, int32_t height_
     opt.optimise.phi_e_mm = 0.05 * (p[2] % 5);
     opt.optimise.phi_s_mm = 0.1 + 0.05 * (p[3] % 12);
     opt.optimise.phi_v_mm = 0.1 + 0.05 * (p[4] % 12);
-    opt.optimise.epsilon_mm = 0.25 * (p[5] % 20);
+    // Not below the widths: without a frame the plate's own corners, which no disc reaches, would be features.
+    opt.optimise.epsilon_mm = fmax(opt.optimise.phi_s_mm, opt.optimise.phi_v_mm) * (1 + p[5] % 10);
     opt.optimise.paper = p[6] & 1;
     opt.predict = p[6] >> 1 & 1;
     opt.optimise.details = p[6] >> 2 & 1;
