@@ -63,24 +63,27 @@ TEST(a_void_bar_of_phi_v_prints_phi_e_narrower_and_a_thinner_one_not_at_all)
     }
 }
 
-TEST(exactly_phi_prints_where_floating_point_misses_it_by_a_hair)
+TEST(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair)
 {
-    // 0.3 / 0.1 is below 3 in floating point; picture pixels of 0.1 mm split four times, phi_s = 12 fine pixels.
-    jali_bitmap picture, mask;
-    CHECK_OK(jali_bitmap_create(ctx, 70, 30, &picture));
-    for (int32_t y = 0; y < 30; y++)
-        for (int32_t x = 20; x < 23; x++) jali_bitmap_set(&picture, x, y, true);
-    CHECK_OK(jali_bitmap_copy(ctx, &picture, &mask));
+    // 0.3 mm over a fine pixel of 7 mm / 280 is 11.999999999999998: still 12 px, so that a bar of 11 px does not print.
     jali_predict_options opt = {.picture_mm = 7, .phi_e_mm = 0, .phi_s_mm = 0.3, .phi_v_mm = 0.3, .recall = false};
+    jali_bitmap picture;
     jali_reference reference;
-    jali_prediction p;
+    CHECK_OK(jali_bitmap_create(ctx, 70, 30, &picture));
     CHECK_OK(jali_reference_create(ctx, &picture, &opt, &reference));
-    CHECK_OK(jali_predict(ctx, &reference, &mask, 0, false, &opt, &p));
-    CHECK_INT(jali_bitmap_get(&p.printed, 4 * 21, 60), 1);
-    jali_prediction_free(ctx, &p);
+    for (int32_t wide = 11; wide <= 12; wide++) {
+        jali_bitmap mask;
+        jali_prediction p;
+        CHECK_OK(jali_bitmap_create(ctx, 280, 120, &mask));
+        for (int32_t y = 0; y < 120; y++)
+            for (int32_t x = 100; x < 100 + wide; x++) jali_bitmap_set(&mask, x, y, true);
+        CHECK_OK(jali_predict(ctx, &reference, &mask, 0, false, &opt, &p));
+        CHECK_INT(jali_bitmap_get(&p.printed, 105, 60), wide == 12);
+        jali_prediction_free(ctx, &p);
+        jali_bitmap_free(ctx, &mask);
+    }
     jali_reference_free(ctx, &reference);
     jali_bitmap_free(ctx, &picture);
-    jali_bitmap_free(ctx, &mask);
 }
 
 // A picture with a solid square of 10 px and a speck of 2 px, printed with growth 1 px a side: the square gains a rim,
@@ -209,7 +212,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_solid_bar_of_phi_s_prints_phi_e_wider_and_a_thinner_one_not_at_all),
         cmocka_unit_test(a_void_bar_of_phi_v_prints_phi_e_narrower_and_a_thinner_one_not_at_all),
-        cmocka_unit_test(exactly_phi_prints_where_floating_point_misses_it_by_a_hair),
+        cmocka_unit_test(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair),
         cmocka_unit_test(the_error_rate_is_what_is_counted_by_hand),
         cmocka_unit_test(recall_is_the_share_of_the_axis_that_prints),
         cmocka_unit_test(every_allocation_refused_once),
