@@ -170,6 +170,26 @@ TEST(components_are_those_of_a_flood_fill)
     }
 }
 
+TEST(majority_is_most_of_seven_by_seven)
+{
+    uint64_t seed = 33;
+    for (int32_t round = 0; round < 8; round++) {
+        int32_t w = 20 + 37 * round, h = 70;
+        bool outside = round % 2;
+        jali_bitmap a = random_bitmap(&seed, w, h, 30 + 6 * round), got;
+        CHECK_OK(jali_bitmap_create(ctx, w, h, &got));
+        CHECK_OK(majority(ctx, &a, outside, &got));
+        for (int32_t y = 0; y < h; y++)
+            for (int32_t x = 0; x < w; x++) {
+                int32_t white = 0;
+                for (int32_t k = 0; k < 49; k++) white += pixel(&a, x + k % 7 - 3, y + k / 7 - 3, outside);
+                CHECK(jali_bitmap_get(&got, x, y) == (white >= 25));
+            }
+        jali_bitmap_free(ctx, &a);
+        jali_bitmap_free(ctx, &got);
+    }
+}
+
 // The centres of maximal squares: no neighbour inside the bitmap has a greater chessboard distance.
 static int32_t square_distance(const jali_bitmap *a, int32_t x, int32_t y, bool white, bool outside)
 {
@@ -288,6 +308,7 @@ int main(void)
         cmocka_unit_test(wide_elements_cross_words),
         cmocka_unit_test(a_bar_as_wide_as_the_disc_survives_and_a_thinner_one_does_not),
         cmocka_unit_test(components_are_those_of_a_flood_fill),
+        cmocka_unit_test(majority_is_most_of_seven_by_seven),
         cmocka_unit_test(medial_axis_is_the_ridge_of_the_chessboard_distance),
         cmocka_unit_test(distances_are_those_of_all_pairs),
         cmocka_unit_test(threads_do_not_change_distances),

@@ -22,7 +22,7 @@ typedef struct jali_adapt_options {
     // jali_adapt_print alone:
     double axis_worth_white;  // what a lost pixel of a detail's axis weighs, as a share of the narrowest width, 0 to
     double axis_worth_black;  // 100: 0 = only the count of wrong pixels matters; more keeps more fine detail of that
-                              // tone and draws it wider, at the price of wrong pixels. Default 0.22 and 0.26: over
+                              // tone and draws it wider, at the price of wrong pixels. Default 0.22 and 0.27: over
                               // 24 runs both tones then keep the same share (docs/adapt.md)
 } jali_adapt_options;
 

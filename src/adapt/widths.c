@@ -13,7 +13,7 @@ jali_adapt_options jali_adapt_defaults(void)
 {
     return (jali_adapt_options){.shape = JALI_SHAPE_DISC, .solid_px = 12, .void_px = 20, .epsilon_px = 40,
                                 .isolated_matters = true, .outside_solid = true, .growth_px = 1,
-                                .axis_worth_white = 0.22, .axis_worth_black = 0.26};
+                                .axis_worth_white = 0.22, .axis_worth_black = 0.27};
 }
 
 static jali_status check_widths(jali_context *ctx, const jali_adapt_options *opt)

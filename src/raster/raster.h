@@ -68,6 +68,11 @@ jali_status close_by(jali_context *ctx, const jali_bitmap *src, const element *e
 void resize_nearest(jali_context *ctx, const jali_bitmap *src, int32_t left, int32_t top, int32_t width,
                     int32_t height, jali_bitmap *dst);
 
+// --- Smoothing (majority.c)
+
+/// dst = the tone that most pixels of the 7 x 7 around each pixel have; dst is not src.   fails  JALI_NO_MEMORY
+jali_status majority(jali_context *ctx, const jali_bitmap *src, bool outside, jali_bitmap *dst);
+
 // --- Medial axis (axis.c)
 
 /// The centres of the maximal squares inside the white (or black) pixels: the ridge of the chessboard distance.
