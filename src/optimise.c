@@ -279,6 +279,7 @@ static jali_status by_design_of_the_print(jali_context *ctx, optimising *o, cons
     jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid};
     if (o->opt.details) TRY(look_at_drawing(ctx, o, drawing));
     TRY(jali_adapt_print(ctx, drawing, &o->widths, &print, &report));
+    TRY(jali_adapt_smooth(ctx, &o->widths, &print));
     TRY(jali_connect(ctx, &print, &connect, &joined, &bridges));
     TRY(jali_adapt_prune(ctx, drawing, &bridges, &o->widths, &print, &o->result->pieces_dropped));
     TRY(jali_compensate(ctx, &print, &compensate, mask));

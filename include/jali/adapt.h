@@ -63,8 +63,8 @@ typedef struct jali_stamp_report {
     int64_t tried, white, black; // places looked at, discs of each tone that stayed
 } jali_stamp_report;
 
-/// The default in place of rounds: a print that keeps to the widths everywhere and differs least from the
-/// drawing. Begins with the opening and closing; then at each lost detail a disc of its tone is set, with all
+/// The default in place of rounds: a print of discs that differs least from the drawing. (A few spots where discs of the
+/// two tones meet stay thinner; the finish mends them.) Begins with the opening and closing; then at each lost detail a disc of its tone is set, with all
 /// that this closes or cuts off around it, when that lowers
 ///     wrong pixels + axis_worth * width * lost pixels of the details' axes, tone by tone.
 /// The sum is a whole number and falls with each disc that stays, so the search ends.
@@ -73,6 +73,10 @@ typedef struct jali_stamp_report {
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_BAD_VALUE
 JALI_API jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, const jali_adapt_options *opt,
                                       jali_bitmap *print, jali_stamp_report *report);
+
+/// Smooth the edges of a print wherever the discs of both tones still fit afterwards: the input's pixel stairs go.
+///   in,out print
+JALI_API jali_status jali_adapt_smooth(jali_context *ctx, const jali_adapt_options *opt, jali_bitmap *print);
 
 /// Remove the pieces of a print that are not worth their bridges. The bridges that would join the pieces make a
 /// tree; of the trees that hold the largest piece, the one is kept that gains most: what its pieces save in wrong

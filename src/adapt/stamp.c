@@ -23,7 +23,7 @@
 #include "adapt/window.h"
 #include "base/base.h"
 
-enum { BAND_ROWS = 256, PAD_PX = 64, PASSES = 6, MAX_REACH_PX = 63, WRONG_ROUNDS = 1, SMOOTH_WIDTH_PX = 10 };
+enum { BAND_ROWS = 256, PAD_PX = 64, PASSES = 6, MAX_REACH_PX = 63, WRONG_ROUNDS = 1 };
 
 static const double PASS_GAIN[PASSES] = {0.24, 0.08, 0, 0, 0, 0}; // of a disc's area
 
@@ -389,50 +389,6 @@ done:
     return status;
 }
 
-// Where a smoothed print no longer holds the discs: what an opening of either tone removes, single pixels aside.
-static jali_status find_damage(jali_context *ctx, stamping *s, const jali_bitmap *smooth, jali_bitmap *scratch,
-                               jali_bitmap *damage)
-{
-    jali_status status;
-    jali_bitmap opened = {0};
-    element speck = {0}, around = {0};
-    TRY(element_square(ctx, 2, &speck));
-    TRY(element_disc(ctx, 2 * MAX(s->side[1].disc.size, s->side[0].disc.size) + 1, &around));
-    TRY(jali_bitmap_create(ctx, smooth->width_px, smooth->height_px, &opened));
-    TRY(open_by(ctx, smooth, &s->side[1].disc, true, scratch, &opened));
-    combine(ctx, RULE_XOR, smooth, &opened, damage);
-    TRY(close_by(ctx, smooth, &s->side[0].disc, true, scratch, &opened));
-    combine(ctx, RULE_XOR, smooth, &opened, &opened);
-    combine(ctx, RULE_OR, damage, &opened, damage);
-    TRY(open_by(ctx, damage, &speck, false, scratch, damage));
-    TRY(dilate(ctx, damage, &around, false, scratch));
-    combine(ctx, RULE_AND, scratch, scratch, damage);
-done:
-    jali_bitmap_free(ctx, &opened);
-    element_free(ctx, &speck);
-    element_free(ctx, &around);
-    return status;
-}
-
-// The input's pixels show as stairs and the discs as beads along edges: smooth the print wherever that does no harm.
-static jali_status smooth_edges(jali_context *ctx, stamping *s, jali_bitmap *scratch)
-{
-    jali_status status;
-    jali_bitmap smooth = {0}, damage = {0};
-    TRY(jali_bitmap_create(ctx, s->print.width_px, s->print.height_px, &smooth));
-    TRY(jali_bitmap_create(ctx, s->print.width_px, s->print.height_px, &damage));
-    TRY(majority(ctx, &s->print, true, scratch));
-    TRY(majority(ctx, scratch, true, &smooth));
-    TRY(find_damage(ctx, s, &smooth, scratch, &damage));
-    combine(ctx, RULE_AND, &s->print, &damage, &s->print);
-    combine(ctx, RULE_AND_NOT, &smooth, &damage, &smooth);
-    combine(ctx, RULE_OR, &s->print, &smooth, &s->print);
-done:
-    jali_bitmap_free(ctx, &smooth);
-    jali_bitmap_free(ctx, &damage);
-    return status;
-}
-
 jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, const jali_adapt_options *opt,
                              jali_bitmap *print, jali_stamp_report *report)
 {
@@ -462,7 +418,6 @@ jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, cons
         TRY(find_fits(ctx, &s, &scratch));
         TRY(search(ctx, &s, &scratch, report));
     }
-    if (MIN(solid, hollow) >= SMOOTH_WIDTH_PX) TRY(smooth_edges(ctx, &s, &scratch));
     TRY(jali_bitmap_create(ctx, drawing->width_px, drawing->height_px, print));
     cut_out(&s.print, PAD_PX, PAD_PX, print);
 done:
