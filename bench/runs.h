@@ -10,10 +10,10 @@ typedef struct bench_run {
 enum { BENCH_RUNS = 24 };
 
 static const bench_run bench_runs[BENCH_RUNS] = {
-    {"calligraphy", 70}, {"calligraphy", 40}, {"dense", 70},       {"dense", 40},       {"halftone", 70}, {"halftone", 40},
-    {"islands", 70},     {"islands", 40},     {"lion", 70},        {"lion", 40},        {"monroe-like", 70},
-    {"monroe-like", 40}, {"ornament", 84},    {"ornament", 48},    {"plum", 105},       {"plum", 60},
-    {"portrait", 70},    {"portrait", 40},    {"scenery", 120},    {"scenery", 85},     {"text", 70},     {"text", 40},
-    {"tree", 80},        {"tree", 56}};
+    {"calligraphy", 70}, {"calligraphy", 40}, {"dense", 70},    {"dense", 40},    {"halftone", 70},
+    {"halftone", 40},    {"islands", 70},     {"islands", 40},  {"lion", 70},     {"lion", 40},
+    {"monroe-like", 70}, {"monroe-like", 40}, {"ornament", 84}, {"ornament", 48}, {"plum", 105},
+    {"plum", 60},        {"portrait", 70},    {"portrait", 40}, {"scenery", 120}, {"scenery", 85},
+    {"text", 70},        {"text", 40},        {"tree", 80},     {"tree", 56}};
 
 #endif

@@ -2,8 +2,9 @@
 //
 //     widths [DATA_FOLDER] [--threads N] [--only NAME] [--paper] [--tolerance PX]
 //
-// The same 24 runs as results.c. Each mask is judged by exact distances (tests/judge_widths.h) with discs of diameter
-// phi_s and phi_v, less the tolerance for rasterisation (1 working pixel). Exit 1 when a type A or B is left.
+// The same 24 runs as results.c. Each mask is judged by exact distances (tests/judge_widths.h) with discs of
+// diameter phi_s and phi_v, less the tolerance for rasterisation (1 working pixel). Exit 1 when a type A or B
+// is left.
 #include <jali/jali.h>
 #include "judge_widths.h"
 #include "runs.h"
@@ -39,14 +40,15 @@ static int32_t judge_run(jali_context *ctx, const request *r, const bench_run *r
     opt.optimise.paper = r->paper;
     opt.solid = opt.predict = false;
     snprintf(path, sizeof path, "%s/%s.png", r->folder, run->name);
-    if (jali_read(ctx, path, NULL, &picture) != JALI_OK || jali_make(ctx, &picture, &opt, &result) != JALI_OK) {
+    if (jali_read(ctx, path, NULL, &picture) != JALI_OK ||
+        jali_make(ctx, &picture, &opt, &result) != JALI_OK) {
         fprintf(stderr, "%s\n", jali_message(ctx));
         jali_picture_free(ctx, &picture);
         return -1;
     }
     judge_verdict white, black;
-    judge_mask(&result.optimised.mask, &result.chart, &opt.optimise, result.optimised.kernels_px, r->tolerance_px,
-               &white, &black);
+    judge_mask(&result.optimised.mask, &result.chart, &opt.optimise, result.optimised.kernels_px,
+               r->tolerance_px, &white, &black);
     printf("| %s %.0f", run->name, run->width_mm);
     print_verdict(&white);
     print_verdict(&black);
@@ -65,16 +67,22 @@ int main(int argc, char **argv)
     jali_context_options copt = jali_context_defaults();
     copt.threads = 1;
     for (int i = 1; i < argc; i++) {
-        if (!strcmp(argv[i], "--threads") && i + 1 < argc) copt.threads = atoi(argv[++i]);
-        else if (!strcmp(argv[i], "--only") && i + 1 < argc) r.only = argv[++i];
-        else if (!strcmp(argv[i], "--tolerance") && i + 1 < argc) r.tolerance_px = atof(argv[++i]);
-        else if (!strcmp(argv[i], "--paper")) r.paper = true;
-        else r.folder = argv[i];
+        if (!strcmp(argv[i], "--threads") && i + 1 < argc)
+            copt.threads = atoi(argv[++i]);
+        else if (!strcmp(argv[i], "--only") && i + 1 < argc)
+            r.only = argv[++i];
+        else if (!strcmp(argv[i], "--tolerance") && i + 1 < argc)
+            r.tolerance_px = atof(argv[++i]);
+        else if (!strcmp(argv[i], "--paper"))
+            r.paper = true;
+        else
+            r.folder = argv[i];
     }
     jali_context *ctx;
     if (jali_context_create(&copt, &ctx) != JALI_OK) return 1;
     int32_t left = 0, count = 0;
-    printf("| picture, width mm | solid: uncovered px | A, B, C | void: uncovered px | A, B, C |\n|---|---|---|---|---|\n");
+    printf("| picture, width mm | solid: uncovered px | A, B, C | void: uncovered px | A, B, C "
+           "|\n|---|---|---|---|---|\n");
     for (int32_t i = 0; i < BENCH_RUNS; i++) {
         if (r.only && strcmp(r.only, bench_runs[i].name)) continue;
         int32_t found = judge_run(ctx, &r, &bench_runs[i]);

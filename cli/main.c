@@ -80,7 +80,8 @@ static int unknown_verb(const char *typed)
 
 int main(int argc, char **argv)
 {
-    // Bitmaps of some MB come and go: keep their pages instead of asking the kernel for cleared ones each time.
+    // Bitmaps of some MB come and go: keep their pages instead of asking the kernel for cleared ones each
+    // time.
     mallopt(M_MMAP_THRESHOLD, 1 << 28);
     mallopt(M_TRIM_THRESHOLD, 1 << 28);
     char sentence[SENTENCE_BYTES];

@@ -1,6 +1,7 @@
 // Any bytes as a bitmap and parameters, through the whole pipeline: every promise is asserted on the result.
 //
-// Layout: 12 bytes of parameters (see settings), then pixels, a bit each; missing ones repeat a noise of the last byte.
+// Layout: 12 bytes of parameters (see settings), then pixels, a bit each; missing ones repeat a noise of the
+// last byte.
 #include "model.h"
 #include "plain.h"
 
@@ -22,15 +23,16 @@ static uint8_t *grey_of(const uint8_t *data, size_t size, int32_t width, int32_t
     return grey;
 }
 
-// The longer side is 2 to 33 times the narrower width: from a picture of which almost nothing prints to one of which
-// all does; the working grid stays below some 500 px.
+// The longer side is 2 to 33 times the narrower width: from a picture of which almost nothing prints to one
+// of which all does; the working grid stays below some 500 px.
 static jali_options settings(const uint8_t *p, int32_t width_px, int32_t height_px)
 {
     jali_options opt = jali_defaults();
     opt.optimise.phi_e_mm = 0.05 * (p[2] % 5);
     opt.optimise.phi_s_mm = 0.1 + 0.05 * (p[3] % 12);
     opt.optimise.phi_v_mm = 0.1 + 0.05 * (p[4] % 12);
-    // Not below the widths: without a frame the plate's own corners, which no disc reaches, would be features.
+    // Not below the widths: without a frame the plate's own corners, which no disc reaches, would be
+    // features.
     opt.optimise.epsilon_mm = fmax(opt.optimise.phi_s_mm, opt.optimise.phi_v_mm) * (1 + p[5] % 10);
     opt.optimise.paper = p[6] & 1;
     opt.predict = p[6] >> 1 & 1;
@@ -59,7 +61,8 @@ static void require_promises(jali_context *ctx, const jali_options *opt, const j
     REQUIRE(plain_pieces(&mask, true, 4) == 1);
     plain_free(&mask);
     REQUIRE(r->printable && r->closed && r->check.solid && r->check.pieces == 1);
-    // The paper rounds its kernels, also downwards: what keeps to them may be too thin to print, and the result says so.
+    // The paper rounds its kernels, also downwards: what keeps to them may be too thin to print, and the
+    // result says so.
     REQUIRE(r->one_piece || (opt->optimise.paper && opt->predict && r->result_print.pieces != 1));
     REQUIRE(!r->one_piece || !opt->predict || r->result_print.pieces == 1);
     require_sound(&r->mesh);
@@ -80,9 +83,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     jali_options opt = settings(data, width, height);
     jali_result result;
     jali_status status = jali_make(ctx, &picture, &opt, &result);
-    if (status == JALI_OK) require_promises(ctx, &opt, &result);
+    if (status == JALI_OK)
+        require_promises(ctx, &opt, &result);
     else {
-        REQUIRE(status == JALI_BAD_INPUT || status == JALI_BAD_VALUE || status == JALI_NO_RESULT || status == JALI_LIMIT);
+        REQUIRE(status == JALI_BAD_INPUT || status == JALI_BAD_VALUE || status == JALI_NO_RESULT ||
+                status == JALI_LIMIT);
         REQUIRE(strlen(jali_message(ctx)) > 0);
         REQUIRE(result.mesh.vertex == NULL && result.optimised.mask.word == NULL);
     }

@@ -10,15 +10,22 @@
 
 const char *jali_stage_name(int32_t stage)
 {
-    static const char *const name[JALI_STAGES] = {"threshold", "place", "optimise", "predict", "trace", "carve", "check"};
+    static const char *const name[JALI_STAGES] = {"threshold", "place", "optimise", "predict",
+                                                  "trace",     "carve", "check"};
     return stage >= 0 && stage < JALI_STAGES ? name[stage] : "";
 }
 
 jali_options jali_defaults(void)
 {
-    jali_options opt = {.threshold = jali_threshold_defaults(), .place = jali_place_defaults(),
-                        .optimise = jali_optimise_defaults(), .trace = jali_trace_defaults(),
-                        .carve = jali_carve_defaults(), .predict = true, .recall = true, .solid = true, .check = true};
+    jali_options opt = {.threshold = jali_threshold_defaults(),
+                        .place = jali_place_defaults(),
+                        .optimise = jali_optimise_defaults(),
+                        .trace = jali_trace_defaults(),
+                        .carve = jali_carve_defaults(),
+                        .predict = true,
+                        .recall = true,
+                        .solid = true,
+                        .check = true};
     opt.place.frame_mm = opt.carve.frame_mm = 2;
     return opt;
 }
@@ -54,7 +61,8 @@ static jali_options agreed(const jali_options *given)
     return opt;
 }
 
-static jali_status black_and_white(jali_context *ctx, jali_picture *picture, const jali_options *opt, jali_result *r)
+static jali_status black_and_white(jali_context *ctx, jali_picture *picture, const jali_options *opt,
+                                   jali_result *r)
 {
     jali_status status;
     components pieces = {0};
@@ -68,10 +76,11 @@ done:
 }
 
 // The picture at its own resolution in a margin of what surrounds it.
-static jali_status framed(jali_context *ctx, const jali_bitmap *picture, bool outside_solid, int32_t margin_px,
-                          jali_bitmap *out)
+static jali_status framed(jali_context *ctx, const jali_bitmap *picture, bool outside_solid,
+                          int32_t margin_px, jali_bitmap *out)
 {
-    jali_status status = jali_bitmap_create(ctx, picture->width_px + 2 * margin_px, picture->height_px + 2 * margin_px, out);
+    jali_status status =
+        jali_bitmap_create(ctx, picture->width_px + 2 * margin_px, picture->height_px + 2 * margin_px, out);
     if (status != JALI_OK) return status;
     fill(ctx, out, outside_solid);
     paste(picture, margin_px, margin_px, out);
@@ -86,8 +95,10 @@ static jali_status predict(jali_context *ctx, const jali_options *opt, jali_resu
     bool outside = r->chart.outside_solid;
     jali_reference reference = {0};
     jali_bitmap plain = {0};
-    jali_predict_options p = {.phi_e_mm = opt->optimise.phi_e_mm, .phi_s_mm = opt->optimise.phi_s_mm,
-                              .phi_v_mm = opt->optimise.phi_v_mm, .recall = opt->recall};
+    jali_predict_options p = {.phi_e_mm = opt->optimise.phi_e_mm,
+                              .phi_s_mm = opt->optimise.phi_s_mm,
+                              .phi_v_mm = opt->optimise.phi_v_mm,
+                              .recall = opt->recall};
     p.picture_mm = jali_chart_pixel_mm(&r->chart) * (r->chart.width_px - 2 * r->chart.margin_px);
     TRY(step(ctx, "predict", 0));
     TRY(jali_reference_create(ctx, &r->input, &p, &reference));
@@ -108,7 +119,9 @@ static jali_status judge_mask(jali_context *ctx, const jali_options *opt, jali_r
     jali_status status = label_components(ctx, &r->optimised.mask, true, 4, &pieces);
     const jali_round *left = &r->optimised.residual;
     r->one_piece = pieces.count == 1 && (!opt->predict || r->result_print.pieces == 1);
-    r->printable = left->white[JALI_TYPE_A] + left->white[JALI_TYPE_B] + left->black[JALI_TYPE_A] + left->black[JALI_TYPE_B] == 0;
+    r->printable = left->white[JALI_TYPE_A] + left->white[JALI_TYPE_B] + left->black[JALI_TYPE_A] +
+                       left->black[JALI_TYPE_B] ==
+                   0;
     components_free(ctx, &pieces);
     return status;
 }
@@ -121,7 +134,12 @@ jali_status jali_make(jali_context *ctx, jali_picture *picture, const jali_optio
     jali_contours outline = {0};
     double begun = now_seconds();
     *r = (jali_result){0};
-#define LAP(stage) do { double t = now_seconds(); r->seconds[stage] = t - begun; begun = t; } while (0)
+#define LAP(stage)                                                                                           \
+    do {                                                                                                     \
+        double t = now_seconds();                                                                            \
+        r->seconds[stage] = t - begun;                                                                       \
+        begun = t;                                                                                           \
+    } while (0)
 
     TRY(black_and_white(ctx, picture, &opt, r));
     LAP(JALI_STAGE_THRESHOLD);

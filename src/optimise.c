@@ -2,12 +2,13 @@
 //
 // Source:  Binary Image Carving for 3D Printing, section 4, Algorithms 1 and 3.
 // Two ways through the same stages:
-//   --paper  Algorithm 1 to the letter: connect, compensate, then Algorithm 3's rounds on the input's grid with
-//            square elements. As written the rounds need not end (34 of 74 runs go round in circles), so they stop
-//            after most_rounds or when a picture comes back, and the finish settles what is left.
+//   --paper  Algorithm 1 to the letter: connect, compensate, then Algorithm 3's rounds on the input's grid
+//   with
+//            square elements. As written the rounds need not end (34 of 74 runs go round in circles), so they
+//            stop after most_rounds or when a picture comes back, and the finish settles what is left.
 //   default  the print is designed first, in the widths it will have (jali_adapt_print: the owner of each
-//            conflict is whoever leaves the smaller predicted error), pieces that are not worth their bridges go,
-//            then the mask is the print less what the printer adds, and the finish joins it.
+//            conflict is whoever leaves the smaller predicted error), pieces that are not worth their bridges
+//            go, then the mask is the print less what the printer adds, and the finish joins it.
 // Ends:    rounds are counted; the finish only adds solid after its first round (src/adapt/finish.c).
 // Checked: tests/test_optimise.c; docs/results.md on 24 runs over real pictures.
 #include <jali/compensate.h>
@@ -23,8 +24,8 @@ static const double WIDTH_TOLERANCE_PX = 0.01;
 
 jali_optimise_options jali_optimise_defaults(void)
 {
-    return (jali_optimise_options){.phi_e_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .epsilon_mm = 4,
-                                   .most_rounds = 8, .detail = 1};
+    return (jali_optimise_options){
+        .phi_e_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .epsilon_mm = 4, .most_rounds = 8, .detail = 1};
 }
 
 void jali_optimised_free(jali_context *ctx, jali_optimised *result)
@@ -48,9 +49,10 @@ static double nearest_half_down(double x)
     return ceil(x - 0.5 - 1e-9);
 }
 
-// Eq. 1 and section 4.3, in the reading that gives all of Table 1: omega_c = max(3, odd(ceil(r / 2) + 2)) with
-// r = phi_e / pixel rounded, omega_w and omega_b = the rounded widths made odd.
-void jali_paper_kernels(double phi_e_mm, double phi_s_mm, double phi_v_mm, double pixel_mm, int32_t kernels_px[3])
+// Eq. 1 and section 4.3, in the reading that gives all of Table 1: omega_c = max(3, odd(ceil(r / 2) + 2))
+// with r = phi_e / pixel rounded, omega_w and omega_b = the rounded widths made odd.
+void jali_paper_kernels(double phi_e_mm, double phi_s_mm, double phi_v_mm, double pixel_mm,
+                        int32_t kernels_px[3])
 {
     kernels_px[0] = MAX(3, odd(ceil(nearest_half_down(phi_e_mm / pixel_mm) / 2) + 2));
     kernels_px[1] = MAX(1, odd(nearest_half_down(phi_s_mm / pixel_mm)));
@@ -73,8 +75,8 @@ static jali_status check_positive(jali_context *ctx, const char *name, double mm
                 zero_allowed ? "0 to" : "more than 0 and up to");
 }
 
-static jali_status choose_kernels(jali_context *ctx, const jali_optimise_options *opt, const jali_chart *chart,
-                                  int32_t kernels_px[3])
+static jali_status choose_kernels(jali_context *ctx, const jali_optimise_options *opt,
+                                  const jali_chart *chart, int32_t kernels_px[3])
 {
     jali_status status;
     TRY(check_positive(ctx, "phi_e", opt->phi_e_mm, true));
@@ -82,15 +84,17 @@ static jali_status choose_kernels(jali_context *ctx, const jali_optimise_options
     TRY(check_positive(ctx, "phi_v", opt->phi_v_mm, false));
     TRY(check_positive(ctx, "epsilon", opt->epsilon_mm, true));
     double pixel_mm = jali_chart_pixel_mm(chart);
-    if (opt->paper) jali_paper_kernels(opt->phi_e_mm, opt->phi_s_mm, opt->phi_v_mm, pixel_mm, kernels_px);
-    else exact_kernels(opt, pixel_mm, kernels_px);
+    if (opt->paper)
+        jali_paper_kernels(opt->phi_e_mm, opt->phi_s_mm, opt->phi_v_mm, pixel_mm, kernels_px);
+    else
+        exact_kernels(opt, pixel_mm, kernels_px);
     for (int32_t i = 0; i < 3; i++)
         if (opt->kernels_px[i]) kernels_px[i] = opt->kernels_px[i];
     if (kernels_px[0] < 1 || kernels_px[0] % 2 == 0 || kernels_px[1] < 1 || kernels_px[2] < 1 ||
         MAX(kernels_px[0], MAX(kernels_px[1], kernels_px[2])) > 4000)
         return fail(ctx, JALI_BAD_VALUE,
-                    "kernels of %d, %d and %d px: omega_c must be odd and all three from 1 to 4000 px", kernels_px[0],
-                    kernels_px[1], kernels_px[2]);
+                    "kernels of %d, %d and %d px: omega_c must be odd and all three from 1 to 4000 px",
+                    kernels_px[0], kernels_px[1], kernels_px[2]);
 done:
     return status;
 }
@@ -100,7 +104,7 @@ done:
 typedef struct optimising {
     const jali_chart *chart;
     jali_optimise_options opt;
-    jali_adapt_options widths;   // of the mask
+    jali_adapt_options widths; // of the mask
     jali_metric metric;
     size_t round_capacity;
     jali_optimised *result;
@@ -120,8 +124,9 @@ static jali_status record_round(jali_context *ctx, optimising *o, const jali_det
 }
 
 // Look at a picture once: details of both tones and their conflicts, recorded, kept for overlays when first.
-static jali_status look(jali_context *ctx, optimising *o, const jali_bitmap *picture, const jali_adapt_options *widths,
-                        jali_details *white, jali_details *black, jali_bitmap *conflict)
+static jali_status look(jali_context *ctx, optimising *o, const jali_bitmap *picture,
+                        const jali_adapt_options *widths, jali_details *white, jali_details *black,
+                        jali_bitmap *conflict)
 {
     jali_status status;
     int32_t regions = 0;
@@ -141,12 +146,14 @@ static bool anything_to_treat(const jali_details *details)
 static uint64_t hash_of(const jali_bitmap *a)
 {
     uint64_t hash = UINT64_C(14695981039346656037); // FNV-1a, a word at a time
-    for (int64_t i = 0; i < a->stride * a->height_px; i++) hash = (hash ^ a->word[i]) * UINT64_C(1099511628211);
+    for (int64_t i = 0; i < a->stride * a->height_px; i++)
+        hash = (hash ^ a->word[i]) * UINT64_C(1099511628211);
     return hash;
 }
 
 // The first round's findings stay for overlays; those of later rounds go.
-static void keep_or_drop(jali_context *ctx, optimising *o, jali_details *white, jali_details *black, jali_bitmap *conflict)
+static void keep_or_drop(jali_context *ctx, optimising *o, jali_details *white, jali_details *black,
+                         jali_bitmap *conflict)
 {
     jali_optimised *r = o->result;
     if (o->opt.details && r->round_count == 1 && !r->conflict.word) {
@@ -240,7 +247,8 @@ done:
 // --- The two ways
 
 // Algorithm 1 as printed.
-static jali_status by_the_paper(jali_context *ctx, optimising *o, const jali_bitmap *drawing, jali_bitmap *mask)
+static jali_status by_the_paper(jali_context *ctx, optimising *o, const jali_bitmap *drawing,
+                                jali_bitmap *mask)
 {
     jali_status status;
     jali_bitmap joined = {0};
@@ -296,7 +304,8 @@ static jali_status prepare(jali_context *ctx, optimising *o)
     int32_t *kernels = o->result->kernels_px;
     TRY(choose_kernels(ctx, &o->opt, o->chart, kernels));
     if (o->opt.most_rounds < 1 || o->opt.most_rounds > 1000)
-        return fail(ctx, JALI_BAD_VALUE, "at most %d rounds were asked for; 1 to 1000 is accepted", o->opt.most_rounds);
+        return fail(ctx, JALI_BAD_VALUE, "at most %d rounds were asked for; 1 to 1000 is accepted",
+                    o->opt.most_rounds);
     o->metric = o->opt.paper ? JALI_METRIC_CITY_BLOCK : JALI_METRIC_OCTAGON;
     o->widths = jali_adapt_defaults();
     o->widths.shape = o->opt.paper ? JALI_SHAPE_SQUARE : JALI_SHAPE_DISC;
@@ -315,9 +324,11 @@ done:
 static jali_status check_something_left(jali_context *ctx, const optimising *o, const jali_bitmap *mask)
 {
     if (any_white(ctx, mask)) return JALI_OK;
-    return fail(ctx, JALI_NO_RESULT,
-                "nothing of the picture is wide enough to print: no solid of %.3g mm is left; a larger size, a finer "
-                "printer or a frame would help", o->opt.phi_s_mm);
+    return fail(
+        ctx, JALI_NO_RESULT,
+        "nothing of the picture is wide enough to print: no solid of %.3g mm is left; a larger size, a finer "
+        "printer or a frame would help",
+        o->opt.phi_s_mm);
 }
 
 jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,

@@ -1,15 +1,20 @@
-// A judge of widths: which pixels of a tone does no disc of a given diameter cover, by exact Euclidean distances?
+// A judge of widths: which pixels of a tone does no disc of a given diameter cover, by exact Euclidean
+// distances?
 //
-// Independent: own distance transform, own flood fill, bytes for bits, discs that may lie anywhere on the lattice of
+// Independent: own distance transform, own flood fill, bytes for bits, discs that may lie anywhere on the
+// lattice of
 //          half pixels (the library's lie on whole ones, row by row in words).
-// Method:  a disc lies inside a tone when no pixel centre of the other tone is within its radius; a pixel is covered
-//          when such a disc reaches into it (its centre is within the radius and half a pixel). Both are distance transforms
-//          (Felzenszwalb and Huttenlocher 2012: lower envelope of parabolas), on doubled coordinates in whole
-//          numbers. Centres of discs: pixel centres and pixel corners.
-// Types:   uncovered pixels are grouped (white 4-, black 8-connected). A: the pixels of the other tone around the
-//          group are in more than one part. B: one part, and longer than epsilon from end to end (geodesic, 8-connected)
-//          or touching no larger area of its tone. C: the rest.
-// Limits:  pictures up to about 20,000 px a side (squared doubled distances in 32 bits); about 10 bytes a pixel.
+// Method:  a disc lies inside a tone when no pixel centre of the other tone is within its radius; a pixel is
+// covered
+//          when such a disc reaches into it (its centre is within the radius and half a pixel). Both are
+//          distance transforms (Felzenszwalb and Huttenlocher 2012: lower envelope of parabolas), on doubled
+//          coordinates in whole numbers. Centres of discs: pixel centres and pixel corners.
+// Types:   uncovered pixels are grouped (white 4-, black 8-connected). A: the pixels of the other tone around
+// the
+//          group are in more than one part. B: one part, and longer than epsilon from end to end (geodesic,
+//          8-connected) or touching no larger area of its tone. C: the rest.
+// Limits:  pictures up to about 20,000 px a side (squared doubled distances in 32 bits); about 10 bytes a
+// pixel.
 #ifndef TESTS_JUDGE_WIDTHS_H
 #define TESTS_JUDGE_WIDTHS_H
 
@@ -19,13 +24,14 @@
 
 typedef struct judge_verdict {
     int64_t uncovered_px;
-    int32_t type[3];    // groups of type A, B, C
-    int32_t at[2];      // a pixel of the first A or B, in the picture; (-1, -1): none
+    int32_t type[3]; // groups of type A, B, C
+    int32_t at[2];   // a pixel of the first A or B, in the picture; (-1, -1): none
 } judge_verdict;
 
 static const int32_t JUDGE_FAR = 1 << 30;
 
-/// In place along a line: out(p) = min over q of in(q) + (doubled distance from q + from_half to p + to_half)^2.
+/// In place along a line: out(p) = min over q of in(q) + (doubled distance from q + from_half to p +
+/// to_half)^2.
 ///   in     n      samples, `stride` apart; in(q) may be JUDGE_FAR
 ///          shift  doubled: 2 p - 2 q + shift is the doubled distance
 ///          place, value, edge   scratch [n + 1]
@@ -53,11 +59,13 @@ static inline void judge_envelope(int32_t *line, int32_t n, int64_t stride, int3
         double x = 2.0 * p + shift;
         while (k + 1 < count && edge[k + 1] < x) k++;
         int64_t d = count ? 2 * ((int64_t)p - place[k]) + shift : 0;
-        line[p * stride] = count ? (int32_t)(value[k] + d * d < JUDGE_FAR ? value[k] + d * d : JUDGE_FAR) : JUDGE_FAR;
+        line[p * stride] =
+            count ? (int32_t)(value[k] + d * d < JUDGE_FAR ? value[k] + d * d : JUDGE_FAR) : JUDGE_FAR;
     }
 }
 
-/// Squared doubled distances from each lattice point (x + shift / 2, y + shift / 2) to the nearest (x, y) of the set.
+/// Squared doubled distances from each lattice point (x + shift / 2, y + shift / 2) to the nearest (x, y) of
+/// the set.
 ///   in,out field   [h * w], 0 in the set, JUDGE_FAR elsewhere
 static inline void judge_distances(int32_t *field, int32_t w, int32_t h, int32_t shift)
 {
@@ -89,14 +97,16 @@ static inline plain judge_padded(const jali_bitmap *a, bool outside, int32_t pad
 static inline plain judge_uncovered(const plain *p, bool white, double diameter_px)
 {
     int64_t n = (int64_t)p->w * p->h;
-    double least = diameter_px * diameter_px, most = (diameter_px + 1) * (diameter_px + 1); // squared doubled distances
+    double least = diameter_px * diameter_px,
+           most = (diameter_px + 1) * (diameter_px + 1); // squared doubled distances
     plain bare = plain_create(p->w, p->h);
     int32_t *field = malloc((size_t)n * sizeof *field);
     for (int64_t i = 0; i < n; i++) bare.white[i] = p->white[i] == white;
     for (int32_t corner = 0; corner < 2; corner++) {
         for (int64_t i = 0; i < n; i++) field[i] = p->white[i] == white ? JUDGE_FAR : 0;
         judge_distances(field, p->w, p->h, corner); // at corners: the one to the lower right of pixel (x, y)
-        // A corner is half a pixel aside from every centre: its distance from a straight edge is that much shorter.
+        // A corner is half a pixel aside from every centre: its distance from a straight edge is that much
+        // shorter.
         for (int64_t i = 0; i < n; i++) field[i] = (double)field[i] - corner > least ? 0 : JUDGE_FAR;
         judge_distances(field, p->w, p->h, -corner);
         for (int64_t i = 0; i < n; i++)
@@ -106,7 +116,8 @@ static inline plain judge_uncovered(const plain *p, bool white, double diameter_
     return bare;
 }
 
-/// The same for the paper's squares of an odd size, by definition: where the square fits, and what it then covers.
+/// The same for the paper's squares of an odd size, by definition: where the square fits, and what it then
+/// covers.
 static inline plain judge_uncovered_by_squares(const plain *p, bool white, int32_t size_px)
 {
     plain bare = plain_create(p->w, p->h), fits = plain_create(p->w, p->h);
@@ -127,7 +138,8 @@ static inline plain judge_uncovered_by_squares(const plain *p, bool white, int32
     for (int32_t y = half; y < p->h - half; y++)
         for (int32_t x = half; x < p->w - half; x++)
             if (fits.white[(int64_t)y * p->w + x])
-                for (int32_t v = y - half; v <= y + half; v++) memset(&bare.white[(int64_t)v * p->w + x - half], 0, (size_t)size_px);
+                for (int32_t v = y - half; v <= y + half; v++)
+                    memset(&bare.white[(int64_t)v * p->w + x - half], 0, (size_t)size_px);
     free(run);
     plain_free(&fits);
     return bare;
@@ -203,14 +215,15 @@ static inline int32_t judge_ring_parts(judge_group *g, int32_t count, bool *touc
 }
 
 typedef struct judge_rule {
-    double width_px;    // diameter of the discs, or side of the squares
-    bool squares;       // the paper's elements
-    double epsilon_px;  // longest tip that is let pass
-    bool isolated;      // a detail on its own is type B
+    double width_px;   // diameter of the discs, or side of the squares
+    bool squares;      // the paper's elements
+    double epsilon_px; // longest tip that is let pass
+    bool isolated;     // a detail on its own is type B
 } judge_rule;
 
 /// Judge one tone of a picture in endless surroundings.
-static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_solid, bool white, judge_rule rule)
+static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_solid, bool white,
+                                         judge_rule rule)
 {
     judge_verdict v = {.at = {-1, -1}};
     int32_t pad = (int32_t)rule.width_px + 3;
@@ -219,7 +232,12 @@ static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_soli
                               : judge_uncovered(&p, white, rule.width_px);
     size_t n = (size_t)p.w * (size_t)p.h + 1;
     int32_t *label = malloc(n * sizeof *label);
-    judge_group g = {&p, white, label, calloc(n, sizeof(int32_t)), malloc(n * sizeof(int32_t)), malloc(n * sizeof(int32_t))};
+    judge_group g = {&p,
+                     white,
+                     label,
+                     calloc(n, sizeof(int32_t)),
+                     malloc(n * sizeof(int32_t)),
+                     malloc(n * sizeof(int32_t))};
     int32_t groups = plain_label(&bare, true, white ? 4 : 8, label), next = 0;
     for (int32_t i = 0; next < groups; i++) {
         if (label[i] != next) continue; // not the group's first pixel
@@ -248,12 +266,15 @@ static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_soli
     return v;
 }
 
-/// Judge a mask in both tones: by discs of phi_s and phi_v less a tolerance for rasterisation, or by the paper's squares.
-static inline void judge_mask(const jali_bitmap *mask, const jali_chart *chart, const jali_optimise_options *opt,
-                              const int32_t kernels_px[3], double tolerance_px, judge_verdict *white, judge_verdict *black)
+/// Judge a mask in both tones: by discs of phi_s and phi_v less a tolerance for rasterisation, or by the
+/// paper's squares.
+static inline void judge_mask(const jali_bitmap *mask, const jali_chart *chart,
+                              const jali_optimise_options *opt, const int32_t kernels_px[3],
+                              double tolerance_px, judge_verdict *white, judge_verdict *black)
 {
     double pixel_mm = jali_chart_pixel_mm(chart);
-    judge_rule solid = {opt->phi_s_mm / pixel_mm - tolerance_px, opt->paper, opt->epsilon_mm / pixel_mm, !opt->paper};
+    judge_rule solid = {opt->phi_s_mm / pixel_mm - tolerance_px, opt->paper, opt->epsilon_mm / pixel_mm,
+                        !opt->paper};
     judge_rule hollow = solid;
     hollow.width_px = opt->phi_v_mm / pixel_mm - tolerance_px;
     if (opt->paper) solid.width_px = kernels_px[1], hollow.width_px = kernels_px[2];

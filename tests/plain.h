@@ -1,4 +1,5 @@
-// Pictures as one byte a pixel: the oracle's side of the tests. Slow, obvious, and nothing of it is the library's.
+// Pictures as one byte a pixel: the oracle's side of the tests. Slow, obvious, and nothing of it is the
+// library's.
 #ifndef TESTS_PLAIN_H
 #define TESTS_PLAIN_H
 

@@ -18,10 +18,13 @@ static jali_adapt_options squares(int32_t size_px)
     return opt;
 }
 
-typedef struct box { int32_t x, y, w, h; } box;
+typedef struct box {
+    int32_t x, y, w, h;
+} box;
 
 // The counts of types in the tone of the boxes, drawn on the other tone.
-static void count_types(bool white, const box *boxes, int32_t box_count, const jali_adapt_options *given, int32_t counts[3])
+static void count_types(bool white, const box *boxes, int32_t box_count, const jali_adapt_options *given,
+                        int32_t counts[3])
 {
     jali_bitmap a;
     jali_details details;
@@ -32,7 +35,8 @@ static void count_types(bool white, const box *boxes, int32_t box_count, const j
         for (int32_t x = 0; x < 140; x++) {
             int32_t covered = 0; // a box on a box is a hole
             for (int32_t i = 0; i < box_count; i++)
-                covered += x >= boxes[i].x && x < boxes[i].x + boxes[i].w && y >= boxes[i].y && y < boxes[i].y + boxes[i].h;
+                covered += x >= boxes[i].x && x < boxes[i].x + boxes[i].w && y >= boxes[i].y &&
+                           y < boxes[i].y + boxes[i].h;
             jali_bitmap_set(&a, x, y, (covered == 1) == white);
         }
     CHECK_OK(jali_adapt_details(ctx, &a, white, &opt, &details));
@@ -41,7 +45,8 @@ static void count_types(bool white, const box *boxes, int32_t box_count, const j
     jali_bitmap_free(ctx, &a);
 }
 
-static void check_types(const box *boxes, int32_t box_count, const jali_adapt_options *opt, int32_t a, int32_t b, int32_t c)
+static void check_types(const box *boxes, int32_t box_count, const jali_adapt_options *opt, int32_t a,
+                        int32_t b, int32_t c)
 {
     for (int32_t white = 0; white < 2; white++) {
         int32_t counts[3];
@@ -58,15 +63,17 @@ TEST(drawn_details_have_the_types_of_the_paper)
 {
     jali_adapt_options opt = squares(5), alone = opt;
     alone.isolated_matters = true;
-    check_types(BOXES({10, 10, 30, 30}, {40, 20, 50, 3}, {90, 10, 30, 30}), &opt, 1, 0, 0);         // a bar between two areas
-    check_types(BOXES({10, 10, 30, 30}, {40, 20, 50, 5}, {90, 10, 30, 30}), &opt, 0, 0, 0);         // wide enough
-    check_types(BOXES({10, 10, 90, 10}, {20, 20, 3, 30}, {40, 20, 3, 30}, {60, 20, 3, 30}), &opt, 0, 3, 0); // a comb
-    check_types(BOXES({10, 10, 90, 10}, {20, 20, 3, 6}, {40, 20, 3, 6}), &opt, 0, 0, 2);            // short tips
-    check_types(BOXES({20, 10, 40, 40}, {23, 13, 34, 34}), &opt, 1, 0, 0);                          // a ring
+    check_types(BOXES({10, 10, 30, 30}, {40, 20, 50, 3}, {90, 10, 30, 30}), &opt, 1, 0,
+                0); // a bar between two areas
+    check_types(BOXES({10, 10, 30, 30}, {40, 20, 50, 5}, {90, 10, 30, 30}), &opt, 0, 0, 0); // wide enough
+    check_types(BOXES({10, 10, 90, 10}, {20, 20, 3, 30}, {40, 20, 3, 30}, {60, 20, 3, 30}), &opt, 0, 3,
+                0);                                                                      // a comb
+    check_types(BOXES({10, 10, 90, 10}, {20, 20, 3, 6}, {40, 20, 3, 6}), &opt, 0, 0, 2); // short tips
+    check_types(BOXES({20, 10, 40, 40}, {23, 13, 34, 34}), &opt, 1, 0, 0);               // a ring
     check_types(BOXES({20, 20, 2, 2}), &opt, 0, 0, 1);
-    check_types(BOXES({20, 20, 2, 2}), &alone, 0, 1, 0);                                            // a speck on its own
-    check_types(BOXES({10, 10, 90, 10}, {20, 20, 3, 6}), &alone, 0, 0, 1);                          // a tip is not
-    check_types(BOXES({60, 2, 3, 50}), &opt, 0, 1, 0);                                              // across words
+    check_types(BOXES({20, 20, 2, 2}), &alone, 0, 1, 0);                   // a speck on its own
+    check_types(BOXES({10, 10, 90, 10}, {20, 20, 3, 6}), &alone, 0, 0, 1); // a tip is not
+    check_types(BOXES({60, 2, 3, 50}), &opt, 0, 1, 0);                     // across words
 }
 
 // --- Types on random pictures, by the definition
@@ -94,8 +101,8 @@ static void plain_axis(const plain *p, uint8_t *axis)
     free(d);
 }
 
-static int32_t plain_type(const plain *p, const int32_t *label, int32_t which, const uint8_t *axis, bool white,
-                          const jali_adapt_options *opt)
+static int32_t plain_type(const plain *p, const int32_t *label, int32_t which, const uint8_t *axis,
+                          bool white, const jali_adapt_options *opt)
 {
     plain ring = plain_create(p->w + 2, p->h + 2);
     int32_t axis_px = 0;
@@ -107,8 +114,10 @@ static int32_t plain_type(const plain *p, const int32_t *label, int32_t which, c
             for (int32_t dx = -1; dx <= 1; dx++) {
                 int32_t x = i % p->w + dx, y = i / p->w + dy;
                 if (plain_inside(p, x, y) && label[y * p->w + x] == which) continue;
-                if (plain_at(p, x, y, opt->outside_solid) != white) ring.white[(y + 1) * ring.w + x + 1] = 1;
-                else if (!white || !dx || !dy) touches_own = true;
+                if (plain_at(p, x, y, opt->outside_solid) != white)
+                    ring.white[(y + 1) * ring.w + x + 1] = 1;
+                else if (!white || !dx || !dy)
+                    touches_own = true;
             }
     }
     int32_t parts = plain_pieces(&ring, true, white ? 8 : 4);
@@ -117,7 +126,8 @@ static int32_t plain_type(const plain *p, const int32_t *label, int32_t which, c
     return axis_px > opt->epsilon_px || (opt->isolated_matters && !touches_own) ? JALI_TYPE_B : JALI_TYPE_C;
 }
 
-static void check_details(const jali_bitmap *a, bool white, const jali_adapt_options *opt, const jali_details *got)
+static void check_details(const jali_bitmap *a, bool white, const jali_adapt_options *opt,
+                          const jali_details *got)
 {
     element e[2];
     jali_bitmap opened, scratch;
@@ -152,14 +162,16 @@ static void check_details(const jali_bitmap *a, bool white, const jali_adapt_opt
 }
 
 // Eq. 4: p of one tone's details with one of the other's in a window around it.
-static void plain_conflicts(const plain *own, const plain *other, int32_t size_px, jali_shape shape, plain *conflict)
+static void plain_conflicts(const plain *own, const plain *other, int32_t size_px, jali_shape shape,
+                            plain *conflict)
 {
     int32_t half = size_px / 2, odd = 2 * half + 1;
     for (int32_t y = 0; y < own->h; y++)
         for (int32_t x = 0; x < own->w; x++)
             for (int32_t v = y - half; own->white[y * own->w + x] && v <= y + half; v++)
                 for (int32_t u = x - half; u <= x + half; u++) {
-                    bool within = shape == JALI_SHAPE_SQUARE || 4 * ((u - x) * (u - x) + (v - y) * (v - y)) <= odd * odd;
+                    bool within = shape == JALI_SHAPE_SQUARE ||
+                                  4 * ((u - x) * (u - x) + (v - y) * (v - y)) <= odd * odd;
                     if (within && plain_at(other, u, v, false)) conflict->white[y * own->w + x] = 1;
                 }
 }
@@ -228,11 +240,13 @@ TEST(details_conflicts_and_rounds_are_their_definitions)
 {
     uint64_t seed = 23;
     for (int32_t i = 0; i < 400; i++) {
-        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % (i % 4 ? 40 : 140), h = 1 + (int32_t)(next_random(&seed) >> 40) % 30;
+        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % (i % 4 ? 40 : 140),
+                h = 1 + (int32_t)(next_random(&seed) >> 40) % 30;
         jali_bitmap a = random_bitmap(&seed, w, h, 10 + (int32_t)(next_random(&seed) >> 40) % 80);
         if (i % 2) { // coarser: the wider elements find something to keep
             for (int32_t y = 0; y < h; y++)
-                for (int32_t x = 0; x < w; x++) jali_bitmap_set(&a, x, y, jali_bitmap_get(&a, x / 4 * 4, y / 3 * 3));
+                for (int32_t x = 0; x < w; x++)
+                    jali_bitmap_set(&a, x, y, jali_bitmap_get(&a, x / 4 * 4, y / 3 * 3));
         }
         jali_adapt_options opt = jali_adapt_defaults();
         opt.shape = i % 3 ? JALI_SHAPE_SQUARE : JALI_SHAPE_DISC;
@@ -254,7 +268,8 @@ static jali_bitmap random_blobs(uint64_t *seed, int32_t w, int32_t h, int32_t gr
     jali_bitmap small = random_bitmap(seed, w / grain + 1, h / grain + 1, percent), a;
     CHECK_OK(jali_bitmap_create(ctx, w, h, &a));
     for (int32_t y = 0; y < h; y++)
-        for (int32_t x = 0; x < w; x++) jali_bitmap_set(&a, x, y, jali_bitmap_get(&small, x / grain, y / grain));
+        for (int32_t x = 0; x < w; x++)
+            jali_bitmap_set(&a, x, y, jali_bitmap_get(&small, x / grain, y / grain));
     jali_bitmap_free(ctx, &small);
     return a;
 }
@@ -281,7 +296,8 @@ static jali_bitmap padded(const jali_bitmap *a, bool outside)
 }
 
 // Wrong pixels, and the details' axis pixels lost in each tone, weighed.
-static int64_t weigh(const jali_bitmap *drawing, const jali_bitmap *print, const element e[2], const jali_adapt_options *opt)
+static int64_t weigh(const jali_bitmap *drawing, const jali_bitmap *print, const element e[2],
+                     const jali_adapt_options *opt)
 {
     int64_t sum = WRONG_UNITS * count_combined(ctx, RULE_XOR, drawing, print);
     for (int32_t white = 0; white < 2; white++) {
@@ -293,7 +309,8 @@ static int64_t weigh(const jali_bitmap *drawing, const jali_bitmap *print, const
                        : close_by(ctx, drawing, &e[0], true, &scratch, &removed));
         combine(ctx, RULE_XOR, drawing, &removed, &removed);
         combine(ctx, RULE_AND, &axis, &removed, &axis);
-        sum += axis_worth_units(opt, white, &e[1], &e[0]) * count_combined(ctx, white ? RULE_AND_NOT : RULE_AND, &axis, print);
+        sum += axis_worth_units(opt, white, &e[1], &e[0]) *
+               count_combined(ctx, white ? RULE_AND_NOT : RULE_AND, &axis, print);
         jali_bitmap_free(ctx, &axis);
         jali_bitmap_free(ctx, &removed);
         jali_bitmap_free(ctx, &scratch);
@@ -319,24 +336,28 @@ static int64_t uncovered(const jali_bitmap *print, bool white, const element e[2
     jali_bitmap covered, scratch;
     CHECK_OK(jali_bitmap_create(ctx, print->width_px, print->height_px, &covered));
     CHECK_OK(jali_bitmap_create(ctx, print->width_px, print->height_px, &scratch));
-    CHECK_OK(white ? open_by(ctx, print, &e[1], true, &scratch, &covered) : close_by(ctx, print, &e[0], true, &scratch, &covered));
+    CHECK_OK(white ? open_by(ctx, print, &e[1], true, &scratch, &covered)
+                   : close_by(ctx, print, &e[0], true, &scratch, &covered));
     int64_t count = count_combined(ctx, RULE_XOR, print, &covered);
     jali_bitmap_free(ctx, &covered);
     jali_bitmap_free(ctx, &scratch);
     return count;
 }
 
-static void check_print(const jali_bitmap *drawing, const jali_adapt_options *opt, int64_t loose[2], int64_t *pixels)
+static void check_print(const jali_bitmap *drawing, const jali_adapt_options *opt, int64_t loose[2],
+                        int64_t *pixels)
 {
     element e[2];
     jali_bitmap print;
     jali_stamp_report report;
     CHECK_OK(printed_elements(ctx, opt, &e[1], &e[0]));
     CHECK_OK(jali_adapt_print(ctx, drawing, opt, &print, &report));
-    jali_bitmap wide_drawing = padded(drawing, opt->outside_solid), wide_print = padded(&print, opt->outside_solid);
+    jali_bitmap wide_drawing = padded(drawing, opt->outside_solid),
+                wide_print = padded(&print, opt->outside_solid);
     jali_bitmap start = opened_and_closed(&wide_drawing, e);
     CHECK(weigh(&wide_drawing, &wide_print, e, opt) <= weigh(&wide_drawing, &start, e, opt));
-    for (int32_t white = 0; white < 2; white++) loose[white] += uncovered(&wide_print, white, e) - uncovered(&start, white, e);
+    for (int32_t white = 0; white < 2; white++)
+        loose[white] += uncovered(&wide_print, white, e) - uncovered(&start, white, e);
     *pixels += (int64_t)drawing->width_px * drawing->height_px;
     jali_bitmap_free(ctx, &print);
     jali_bitmap_free(ctx, &wide_drawing);
@@ -357,9 +378,11 @@ TEST(a_print_keeps_to_its_elements_and_never_weighs_more_than_the_opening)
         check_print(&a, &opt, loose, &pixels);
         jali_bitmap_free(ctx, &a);
     }
-    print_message("pixels that no element covers, beyond those of the opening and closing: %lld white, %lld black of %lld\n",
+    print_message("pixels that no element covers, beyond those of the opening and closing: %lld white, %lld "
+                  "black of %lld\n",
                   (long long)loose[1], (long long)loose[0], (long long)pixels);
-    // Not exact: what a disc cuts off goes to the disc's tone, covered by an element of it or not. The finish mends it.
+    // Not exact: what a disc cuts off goes to the disc's tone, covered by an element of it or not. The finish
+    // mends it.
     CHECK(loose[0] + loose[1] <= pixels / 50);
 }
 
@@ -375,7 +398,8 @@ TEST(widths_beyond_the_window_give_the_opening_and_closing)
     opt.growth_px = 9;
     CHECK_OK(jali_adapt_print(ctx, &a, &opt, &print, &report));
     CHECK_OK(printed_elements(ctx, &opt, &e[1], &e[0]));
-    jali_bitmap wide = padded(&a, true), start = opened_and_closed(&wide, e), wide_print = padded(&print, true);
+    jali_bitmap wide = padded(&a, true), start = opened_and_closed(&wide, e),
+                wide_print = padded(&print, true);
     CHECK(report.tried == 0 && same_bitmap(&start, &wide_print));
     jali_bitmap_free(ctx, &a);
     jali_bitmap_free(ctx, &print);
@@ -412,7 +436,8 @@ TEST(far_specks_are_pruned_and_near_areas_stay)
     CHECK_OK(jali_bitmap_create(ctx, 400, 120, &a));
     for (int32_t y = 20; y < 80; y++)
         for (int32_t x = 0; x < 400; x++) {
-            bool area = (x >= 10 && x < 80) || (x >= 86 && x < 150), speck = x >= 380 && x < 386 && y >= 40 && y < 46;
+            bool area = (x >= 10 && x < 80) || (x >= 86 && x < 150),
+                 speck = x >= 380 && x < 386 && y >= 40 && y < 46;
             jali_bitmap_set(&a, x, y, area || speck);
         }
     CHECK_OK(jali_bitmap_copy(ctx, &a, &print));
@@ -420,7 +445,8 @@ TEST(far_specks_are_pruned_and_near_areas_stay)
     CHECK_INT(bridges.count, 2);
     CHECK_OK(jali_adapt_prune(ctx, &a, &bridges, &opt, &print, &dropped));
     CHECK_INT(dropped, 1);
-    CHECK(jali_bitmap_get(&print, 20, 30) && jali_bitmap_get(&print, 100, 30) && !jali_bitmap_get(&print, 382, 42));
+    CHECK(jali_bitmap_get(&print, 20, 30) && jali_bitmap_get(&print, 100, 30) &&
+          !jali_bitmap_get(&print, 382, 42));
     CHECK_INT(count_combined(ctx, RULE_XOR, &a, &print), 36);
     jali_bridges_free(ctx, &bridges);
     jali_bitmap_free(ctx, &a);
@@ -428,16 +454,18 @@ TEST(far_specks_are_pruned_and_near_areas_stay)
     jali_bitmap_free(ctx, &joined);
 }
 
-// What keeping a set of pieces gains: three times what they save, less what their bridges cost; less than nothing when
-// a piece is not joined to the largest one within the set.
-static int64_t gain_of(uint32_t kept, int32_t root, const jali_bridges *bridges, const int64_t *value, const int64_t *cost)
+// What keeping a set of pieces gains: three times what they save, less what their bridges cost; less than
+// nothing when a piece is not joined to the largest one within the set.
+static int64_t gain_of(uint32_t kept, int32_t root, const jali_bridges *bridges, const int64_t *value,
+                       const int64_t *cost)
 {
     uint32_t reached = UINT32_C(1) << root;
     int64_t gain = 0;
     if (!(kept & reached)) return INT64_MIN;
     for (int32_t round = 0; round <= bridges->count; round++)
         for (int32_t i = 0; i < bridges->count; i++) {
-            uint32_t a = UINT32_C(1) << bridges->bridge[i].part[0], b = UINT32_C(1) << bridges->bridge[i].part[1];
+            uint32_t a = UINT32_C(1) << bridges->bridge[i].part[0], b = UINT32_C(1)
+                                                                        << bridges->bridge[i].part[1];
             if ((kept & a) && (kept & b) && ((reached & a) != 0) != ((reached & b) != 0)) {
                 reached |= a | b;
                 gain -= cost[i];
@@ -476,7 +504,8 @@ static int32_t weigh_tree(const jali_bitmap *drawing, const jali_bitmap *print, 
         line_walk walk = walk_line(bridges->bridge[i].from, bridges->bridge[i].to);
         while (walk_on(&walk))
             if (!jali_bitmap_get(print, walk.x, walk.y))
-                cost[i] += (jali_bitmap_get(drawing, walk.x, walk.y) ? -1 : 1) * (int64_t)WRONG_UNITS * e[1].size;
+                cost[i] +=
+                    (jali_bitmap_get(drawing, walk.x, walk.y) ? -1 : 1) * (int64_t)WRONG_UNITS * e[1].size;
         cost[i] = MAX(cost[i], 0);
     }
     jali_bitmap_free(ctx, &axis);
@@ -492,7 +521,8 @@ static bool check_prune(const jali_bitmap *drawing, jali_bitmap *print)
     jali_bitmap joined;
     jali_bridges bridges;
     plain p = plain_of(print);
-    int32_t *label = malloc((size_t)p.w * (size_t)p.h * sizeof *label), pieces = plain_label(&p, true, 4, label), dropped;
+    int32_t *label = malloc((size_t)p.w * (size_t)p.h * sizeof *label),
+            pieces = plain_label(&p, true, 4, label), dropped;
     CHECK_OK(jali_connect(ctx, print, NULL, &joined, &bridges));
     bool whole = pieces > 1 && pieces <= MOST_PIECES && bridges.count == pieces - 1;
     if (whole) {
@@ -505,7 +535,8 @@ static bool check_prune(const jali_bitmap *drawing, jali_bitmap *print)
             CHECK(label[i] >= 0 || !white);
             if (white) kept |= UINT32_C(1) << label[i];
         }
-        for (uint32_t set = 0; set < UINT32_C(1) << pieces; set++) best = MAX(best, gain_of(set, root, &bridges, value, cost));
+        for (uint32_t set = 0; set < UINT32_C(1) << pieces; set++)
+            best = MAX(best, gain_of(set, root, &bridges, value, cost));
         CHECK(gain_of(kept, root, &bridges, value, cost) == best);
         CHECK_INT(dropped, pieces - __builtin_popcount(kept));
     }
@@ -525,7 +556,8 @@ TEST(pruning_finds_the_best_tree_of_all)
         CHECK_OK(jali_bitmap_create(ctx, 150, 100, &drawing));
         for (int32_t k = 0; k < 3 + i % 7; k++) {
             int32_t size = 3 + (int32_t)(next_random(&seed) >> 40) % 25;
-            int32_t x0 = (int32_t)(next_random(&seed) >> 40) % (150 - size), y0 = (int32_t)(next_random(&seed) >> 40) % (100 - size);
+            int32_t x0 = (int32_t)(next_random(&seed) >> 40) % (150 - size),
+                    y0 = (int32_t)(next_random(&seed) >> 40) % (100 - size);
             for (int32_t y = y0; y < y0 + size; y++) paint_run(&drawing, y, x0, x0 + size, true);
         }
         CHECK_OK(jali_bitmap_copy(ctx, &drawing, &print));

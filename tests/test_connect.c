@@ -1,4 +1,5 @@
-// connect: Algorithm 2 bridge by bridge against a plain implementation, and what the octagonal metric promises.
+// connect: Algorithm 2 bridge by bridge against a plain implementation, and what the octagonal metric
+// promises.
 #include "testing.h"
 #include "plain.h"
 #include "raster/raster.h"
@@ -11,10 +12,10 @@
 
 typedef struct greedy {
     plain p;
-    int32_t *label;  // of the picture as it is now
-    int32_t *owner;  // component in the drawing; of a bridge's pixel the one it was laid from
-    int32_t count;   // components now
-    int64_t pixels;  // laid
+    int32_t *label; // of the picture as it is now
+    int32_t *owner; // component in the drawing; of a bridge's pixel the one it was laid from
+    int32_t count;  // components now
+    int64_t pixels; // laid
 } greedy;
 
 static greedy greedy_begin(const jali_bitmap *drawing)
@@ -81,14 +82,17 @@ static int64_t greedy_nearest(const greedy *g, int32_t part, int64_t (*distance)
     return best;
 }
 
-// From pixel to pixel, always to the neighbour nearer to the straight line; of two as near the one above or below.
+// From pixel to pixel, always to the neighbour nearer to the straight line; of two as near the one above or
+// below.
 static void greedy_lay(greedy *g, const int32_t from[2], const int32_t to[2], int32_t owner)
 {
     int64_t wide = llabs((int64_t)to[0] - from[0]), high = llabs((int64_t)to[1] - from[1]), x = 0, y = 0;
     while (x + y < wide + high - 1) {
         int64_t off_if_x = llabs((x + 1) * high - y * wide), off_if_y = llabs(x * high - (y + 1) * wide);
-        if (y == high || (x < wide && off_if_x < off_if_y)) x++;
-        else y++;
+        if (y == high || (x < wide && off_if_x < off_if_y))
+            x++;
+        else
+            y++;
         int64_t column = from[0] + (to[0] > from[0] ? x : -x), row = from[1] + (to[1] > from[1] ? y : -y);
         int64_t i = row * g->p.w + column;
         if (g->p.white[i]) continue;
@@ -138,8 +142,10 @@ static void check_connect(const jali_bitmap *drawing, jali_metric metric)
     greedy g = greedy_begin(drawing);
     for (int32_t i = 0; i < bridges.count; i++) {
         CHECK(g.count > 1);
-        if (metric == JALI_METRIC_CITY_BLOCK) check_city_block(&g, &bridges.bridge[i]);
-        else check_octagon(&g, &bridges.bridge[i]);
+        if (metric == JALI_METRIC_CITY_BLOCK)
+            check_city_block(&g, &bridges.bridge[i]);
+        else
+            check_octagon(&g, &bridges.bridge[i]);
         greedy_lay(&g, bridges.bridge[i].from, bridges.bridge[i].to, bridges.bridge[i].part[0]);
     }
     CHECK(g.count <= 1);
@@ -150,10 +156,12 @@ static void check_connect(const jali_bitmap *drawing, jali_metric metric)
     jali_bridges_free(ctx, &bridges);
 }
 
-static void check_random(int32_t pictures, int32_t most_wide, int32_t most_high, int32_t percent, uint64_t seed)
+static void check_random(int32_t pictures, int32_t most_wide, int32_t most_high, int32_t percent,
+                         uint64_t seed)
 {
     for (int32_t i = 0; i < pictures; i++) {
-        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % most_wide, h = 1 + (int32_t)(next_random(&seed) >> 40) % most_high;
+        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % most_wide,
+                h = 1 + (int32_t)(next_random(&seed) >> 40) % most_high;
         jali_bitmap a = random_bitmap(&seed, w, h, 1 + (int32_t)(next_random(&seed) >> 40) % percent);
         check_connect(&a, JALI_METRIC_CITY_BLOCK);
         check_connect(&a, JALI_METRIC_OCTAGON);
@@ -176,11 +184,13 @@ TEST(every_bridge_is_the_greedy_one_far_apart)
 {
     uint64_t seed = 4;
     for (int32_t i = 0; i < 60; i++) {
-        int32_t w = 100 + (int32_t)(next_random(&seed) >> 40) % 400, h = 1 + (int32_t)(next_random(&seed) >> 40) % 90;
+        int32_t w = 100 + (int32_t)(next_random(&seed) >> 40) % 400,
+                h = 1 + (int32_t)(next_random(&seed) >> 40) % 90;
         jali_bitmap a;
         CHECK_OK(jali_bitmap_create(ctx, w, h, &a));
         for (int32_t k = 0; k < 2 + i % 5; k++)
-            jali_bitmap_set(&a, (int32_t)(next_random(&seed) >> 40) % w, (int32_t)(next_random(&seed) >> 40) % h, true);
+            jali_bitmap_set(&a, (int32_t)(next_random(&seed) >> 40) % w,
+                            (int32_t)(next_random(&seed) >> 40) % h, true);
         check_connect(&a, JALI_METRIC_CITY_BLOCK);
         check_connect(&a, JALI_METRIC_OCTAGON);
         jali_bitmap_free(ctx, &a);
@@ -221,16 +231,22 @@ TEST(nothing_to_join_changes_nothing)
     CHECK_INT(bridges_of(".", 1), 0);
     CHECK_INT(bridges_of("####"
                          "#..#"
-                         "####", 4), 0);
+                         "####",
+                         4),
+              0);
 }
 
 TEST(touching_corners_are_two_parts)
 {
     CHECK_INT(bridges_of("#."
-                         ".#", 2), 1);
+                         ".#",
+                         2),
+              1);
     CHECK_INT(bridges_of("#.#"
                          ".#."
-                         "#.#", 3), 3); // the first bridge touches three parts at once
+                         "#.#",
+                         3),
+              3); // the first bridge touches three parts at once
 }
 
 TEST(a_bridge_shortens_later_ones)
@@ -285,7 +301,8 @@ TEST(any_number_of_threads_gives_the_same_bytes)
             CHECK_INT(jali_connect(by_threads[i], &a, NULL, &joined[i], &bridges[i]), JALI_OK);
             CHECK(same_bitmap(&joined[i], &joined[0]));
             CHECK_INT(bridges[i].count, bridges[0].count);
-            CHECK(memcmp(bridges[i].bridge, bridges[0].bridge, (size_t)bridges[0].count * sizeof(jali_bridge)) == 0);
+            CHECK(memcmp(bridges[i].bridge, bridges[0].bridge,
+                         (size_t)bridges[0].count * sizeof(jali_bridge)) == 0);
         }
         for (int32_t i = 0; i < 3; i++) {
             jali_bitmap_free(by_threads[i], &joined[i]);

@@ -129,7 +129,7 @@ static jali_status read_3mf_text(const char *model, jali_mesh *mesh)
 
 #define MODEL(unit)                                                                                          \
     "<model unit=\"" unit "\" "                                                                              \
-                          "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
+    "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
 #define TETRAHEDRON(id)                                                                                      \
     "<object id=\"" id                                                                                       \
     "\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"                  \

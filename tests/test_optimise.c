@@ -15,10 +15,10 @@ typedef struct table_row {
 
 // Of Table 1, with the resolutions and sizes that give the pixel (docs/conventions.md).
 static const table_row TABLE_1[] = {
-    {"Tree1", 800 / 80.0, 0.25, 0.45, {3, 3, 5}},       {"Tree2", 800 / 67.0, 0.25, 0.45, {3, 3, 5}},
-    {"Tree3", 800 / 56.0, 0.25, 0.45, {3, 5, 7}},       {"Lion1", 1000 / 70.0, 0.3, 0.5, {3, 5, 7}},
-    {"Lion2", 1000 / 40.0, 0.3, 0.5, {3, 7, 13}},       {"Scenery1", 2400 / 120.0, 0.3, 0.5, {3, 7, 11}},
-    {"Scenery2", 2400 / 85.0, 0.3, 0.5, {5, 9, 15}},    {"Hepburn", 8.06, 0.3, 0.5, {3, 3, 5}},
+    {"Tree1", 800 / 80.0, 0.25, 0.45, {3, 3, 5}},    {"Tree2", 800 / 67.0, 0.25, 0.45, {3, 3, 5}},
+    {"Tree3", 800 / 56.0, 0.25, 0.45, {3, 5, 7}},    {"Lion1", 1000 / 70.0, 0.3, 0.5, {3, 5, 7}},
+    {"Lion2", 1000 / 40.0, 0.3, 0.5, {3, 7, 13}},    {"Scenery1", 2400 / 120.0, 0.3, 0.5, {3, 7, 11}},
+    {"Scenery2", 2400 / 85.0, 0.3, 0.5, {5, 9, 15}}, {"Hepburn", 8.06, 0.3, 0.5, {3, 3, 5}},
 };
 
 TEST(the_paper_kernels_are_those_of_table_1)
@@ -36,14 +36,19 @@ TEST(the_paper_kernels_are_those_of_table_1)
 
 // --- The promises
 
-static jali_chart chart_of(int32_t width_px, int32_t height_px, double pixel_mm, bool outside_solid, int32_t margin_px)
+static jali_chart chart_of(int32_t width_px, int32_t height_px, double pixel_mm, bool outside_solid,
+                           int32_t margin_px)
 {
-    return (jali_chart){.width_px = width_px, .height_px = height_px, .margin_px = margin_px, .pixel_units = 64,
-                        .outside_solid = outside_solid, .unit_mm = pixel_mm / 64};
+    return (jali_chart){.width_px = width_px,
+                        .height_px = height_px,
+                        .margin_px = margin_px,
+                        .pixel_units = 64,
+                        .outside_solid = outside_solid,
+                        .unit_mm = pixel_mm / 64};
 }
 
-// One piece, nothing left below the widths by the library's own count, nothing more than `tolerance_px` below them by
-// the judge's distances.
+// One piece, nothing left below the widths by the library's own count, nothing more than `tolerance_px` below
+// them by the judge's distances.
 static void check_promises(const jali_optimised *r, const jali_chart *chart, const jali_optimise_options *opt)
 {
     plain mask = plain_of(&r->mask);
@@ -56,9 +61,9 @@ static void check_promises(const jali_optimised *r, const jali_chart *chart, con
     judge_verdict white, black;
     judge_mask(&r->mask, chart, opt, r->kernels_px, 1, &white, &black);
     if (white.type[0] + white.type[1] + black.type[0] + black.type[1])
-        print_error("%s: white A %d B %d first (%d, %d); black A %d B %d first (%d, %d)\n", opt->paper ? "paper" : "default",
-                    white.type[0], white.type[1], white.at[0], white.at[1], black.type[0], black.type[1], black.at[0],
-                    black.at[1]);
+        print_error("%s: white A %d B %d first (%d, %d); black A %d B %d first (%d, %d)\n",
+                    opt->paper ? "paper" : "default", white.type[0], white.type[1], white.at[0], white.at[1],
+                    black.type[0], black.type[1], black.at[0], black.at[1]);
     CHECK_INT(white.type[0] + white.type[1] + black.type[0] + black.type[1], 0);
 }
 
@@ -71,8 +76,10 @@ static void check_optimise(const jali_bitmap *drawing, const jali_chart *chart, 
         opt.paper = paper;
         for (int32_t i = 0; i < 3; i++) {
             jali_status status = jali_optimise(by_threads[i], drawing, chart, &opt, &r[i]);
-            if (status == JALI_NO_RESULT) CHECK(r[i].mask.word == NULL && strstr(jali_message(by_threads[i]), "mm"));
-            else CHECK_INT(status, JALI_OK);
+            if (status == JALI_NO_RESULT)
+                CHECK(r[i].mask.word == NULL && strstr(jali_message(by_threads[i]), "mm"));
+            else
+                CHECK_INT(status, JALI_OK);
             CHECK(same_bitmap(&r[i].mask, &r[0].mask));
             CHECK_INT(r[i].bridges, r[0].bridges);
             CHECK_INT(r[i].round_count, r[0].round_count);
@@ -87,7 +94,8 @@ static void check_framed(const jali_bitmap *picture, double pixel_mm, jali_conte
 {
     int32_t margin = (int32_t)(1.1 / pixel_mm) + 2;
     jali_bitmap drawing;
-    CHECK_OK(jali_bitmap_create(ctx, picture->width_px + 2 * margin, picture->height_px + 2 * margin, &drawing));
+    CHECK_OK(
+        jali_bitmap_create(ctx, picture->width_px + 2 * margin, picture->height_px + 2 * margin, &drawing));
     for (int32_t y = 0; y < drawing.height_px; y++)
         for (int32_t x = 0; x < drawing.width_px; x++) {
             int32_t u = x - margin, v = y - margin;
@@ -105,7 +113,8 @@ static jali_bitmap random_blobs(uint64_t *seed, int32_t w, int32_t h, int32_t gr
     jali_bitmap small = random_bitmap(seed, w / grain + 1, h / grain + 1, percent), a;
     CHECK_OK(jali_bitmap_create(ctx, w, h, &a));
     for (int32_t y = 0; y < h; y++)
-        for (int32_t x = 0; x < w; x++) jali_bitmap_set(&a, x, y, jali_bitmap_get(&small, x / grain, y / grain));
+        for (int32_t x = 0; x < w; x++)
+            jali_bitmap_set(&a, x, y, jali_bitmap_get(&small, x / grain, y / grain));
     jali_bitmap_free(ctx, &small);
     return a;
 }
@@ -189,7 +198,8 @@ TEST(the_judge_sees_a_bar_that_is_too_thin)
                 CHECK_INT(v.type[0], 1);
                 CHECK_INT(v.type[1], 0);
                 CHECK(v.uncovered_px >= 30 * (width - 1) && v.at[0] >= 10 && v.at[0] < 110);
-                CHECK_INT(judge_drawn(0, white, (judge_rule){31, squares, 100, true}).type[1], 2); // nothing fits
+                CHECK_INT(judge_drawn(0, white, (judge_rule){31, squares, 100, true}).type[1],
+                          2); // nothing fits
             }
 }
 
@@ -271,7 +281,8 @@ static const golden GOLDEN[] = {
 static bool is_golden(const char *sample, const uint64_t hash[2])
 {
     for (size_t i = 0; i < sizeof GOLDEN / sizeof *GOLDEN; i++)
-        if (strcmp(GOLDEN[i].sample, sample) == 0) return GOLDEN[i].mask[0] == hash[0] && GOLDEN[i].mask[1] == hash[1];
+        if (strcmp(GOLDEN[i].sample, sample) == 0)
+            return GOLDEN[i].mask[0] == hash[0] && GOLDEN[i].mask[1] == hash[1];
     return false;
 }
 
@@ -319,7 +330,8 @@ TEST(real_pictures_keep_the_promises)
         char path[1024];
         jali_picture picture = {0};
         snprintf(path, sizeof path, "%s/images/%s.png", data ? data : "", bench_runs[i].name);
-        if (bench_runs[i].width_mm > MOST_WIDE_MM || !data || jali_read(ctx, path, NULL, &picture) != JALI_OK) {
+        if (bench_runs[i].width_mm > MOST_WIDE_MM || !data ||
+            jali_read(ctx, path, NULL, &picture) != JALI_OK) {
             skipped++;
             continue;
         }
@@ -334,7 +346,9 @@ TEST(real_pictures_keep_the_promises)
 
 static void refuse_option(jali_optimise_options opt, jali_status wanted, const char *word)
 {
-    jali_bitmap a = drawn_rows(3, "###" "#.#" "###");
+    jali_bitmap a = drawn_rows(3, "###"
+                                  "#.#"
+                                  "###");
     jali_chart chart = chart_of(3, 3, 0.1, true, 0);
     jali_optimised r;
     CHECK_STATUS(jali_optimise(ctx, &a, &chart, &opt, &r), wanted);

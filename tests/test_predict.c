@@ -4,22 +4,26 @@
 
 #include <jali/predict.h>
 
-// One picture pixel is 0.1 mm; phi_s 0.4, phi_v 0.6, phi_e 0.2 mm: 4, 6 and 1 a side, 16, 24 and 4 on the fine grid.
+// One picture pixel is 0.1 mm; phi_s 0.4, phi_v 0.6, phi_e 0.2 mm: 4, 6 and 1 a side, 16, 24 and 4 on the
+// fine grid.
 static jali_predict_options options(int32_t width_px)
 {
-    return (jali_predict_options){.picture_mm = 0.1 * width_px, .phi_e_mm = 0.2, .phi_s_mm = 0.4, .phi_v_mm = 0.6, .recall = true};
+    return (jali_predict_options){
+        .picture_mm = 0.1 * width_px, .phi_e_mm = 0.2, .phi_s_mm = 0.4, .phi_v_mm = 0.6, .recall = true};
 }
 
 enum { SIDE_PX = 60, MASK_SCALE = 8, MARGIN_PX = 40 };
 
-// A mask eight times finer than the picture, in a margin, with an upright bar of `wide` mask pixels in its middle.
+// A mask eight times finer than the picture, in a margin, with an upright bar of `wide` mask pixels in its
+// middle.
 static jali_bitmap bar_mask(int32_t wide, bool white)
 {
     jali_bitmap mask;
     int32_t side = SIDE_PX * MASK_SCALE + 2 * MARGIN_PX, left = (side - wide) / 2;
     CHECK_OK(jali_bitmap_create(ctx, side, side, &mask));
     for (int32_t y = 0; y < side; y++)
-        for (int32_t x = 0; x < side; x++) jali_bitmap_set(&mask, x, y, (x >= left && x < left + wide) == white);
+        for (int32_t x = 0; x < side; x++)
+            jali_bitmap_set(&mask, x, y, (x >= left && x < left + wide) == white);
     return mask;
 }
 
@@ -35,7 +39,8 @@ static int32_t printed_across(const jali_bitmap *mask, bool outside_solid)
     CHECK_INT(reference.factor, 4);
     CHECK_OK(jali_predict(ctx, &reference, mask, MARGIN_PX, outside_solid, &opt, &p));
     int32_t across = 0;
-    for (int32_t x = 0; x < p.printed.width_px; x++) across += jali_bitmap_get(&p.printed, x, p.printed.height_px / 2);
+    for (int32_t x = 0; x < p.printed.width_px; x++)
+        across += jali_bitmap_get(&p.printed, x, p.printed.height_px / 2);
     jali_prediction_free(ctx, &p);
     jali_reference_free(ctx, &reference);
     jali_bitmap_free(ctx, &picture);
@@ -65,8 +70,10 @@ TEST(a_void_bar_of_phi_v_prints_phi_e_narrower_and_a_thinner_one_not_at_all)
 
 TEST(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair)
 {
-    // 0.3 mm over a fine pixel of 7 mm / 280 is 11.999999999999998: still 12 px, so that a bar of 11 px does not print.
-    jali_predict_options opt = {.picture_mm = 7, .phi_e_mm = 0, .phi_s_mm = 0.3, .phi_v_mm = 0.3, .recall = false};
+    // 0.3 mm over a fine pixel of 7 mm / 280 is 11.999999999999998: still 12 px, so that a bar of 11 px does
+    // not print.
+    jali_predict_options opt = {
+        .picture_mm = 7, .phi_e_mm = 0, .phi_s_mm = 0.3, .phi_v_mm = 0.3, .recall = false};
     jali_bitmap picture;
     jali_reference reference;
     CHECK_OK(jali_bitmap_create(ctx, 70, 30, &picture));
@@ -86,8 +93,8 @@ TEST(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair)
     jali_bitmap_free(ctx, &picture);
 }
 
-// A picture with a solid square of 10 px and a speck of 2 px, printed with growth 1 px a side: the square gains a rim,
-// the speck is lost.
+// A picture with a solid square of 10 px and a speck of 2 px, printed with growth 1 px a side: the square
+// gains a rim, the speck is lost.
 TEST(the_error_rate_is_what_is_counted_by_hand)
 {
     jali_bitmap picture;
@@ -101,7 +108,8 @@ TEST(the_error_rate_is_what_is_counted_by_hand)
     jali_prediction p;
     CHECK_OK(jali_reference_create(ctx, &picture, &opt, &reference));
     CHECK_OK(jali_predict(ctx, &reference, &picture, 0, false, &opt, &p));
-    // On the fine grid: a 40 px square opened by a disc of 16 loses its four corners, and comes out 4 px wider.
+    // On the fine grid: a 40 px square opened by a disc of 16 loses its four corners, and comes out 4 px
+    // wider.
     plain want = plain_create(160, 120);
     for (int32_t y = 0; y < 120; y++)
         for (int32_t x = 0; x < 160; x++) {
@@ -129,7 +137,8 @@ TEST(the_error_rate_is_what_is_counted_by_hand)
     jali_bitmap_free(ctx, &picture);
 }
 
-// Two black bars in white, 9 and 3 px wide and 20 long, inside a wide frame: the wide one prints, the thin one fills up.
+// Two black bars in white, 9 and 3 px wide and 20 long, inside a wide frame: the wide one prints, the thin
+// one fills up.
 TEST(recall_is_the_share_of_the_axis_that_prints)
 {
     jali_bitmap picture;
@@ -189,7 +198,8 @@ TEST(threads_do_not_change_a_prediction)
         CHECK_INT(jali_reference_create(by_threads[i], &a, &opt, &reference), JALI_OK);
         CHECK_INT(jali_predict(by_threads[i], &reference, &a, 0, true, &opt, &p[i]), JALI_OK);
         CHECK(same_bitmap(&p[i].printed, &p[0].printed));
-        CHECK(p[i].error_rate == p[0].error_rate && p[i].recall_white == p[0].recall_white && p[i].pieces == p[0].pieces);
+        CHECK(p[i].error_rate == p[0].error_rate && p[i].recall_white == p[0].recall_white &&
+              p[i].pieces == p[0].pieces);
         jali_reference_free(by_threads[i], &reference);
     }
     for (int32_t i = 0; i < 3; i++) jali_prediction_free(by_threads[i], &p[i]);

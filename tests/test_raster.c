@@ -87,7 +87,8 @@ TEST(morphology_is_its_definition)
         for (int32_t kind = 0; kind < 3; kind++)
             for (int32_t outside = 0; outside < 2; outside++) {
                 int32_t width[] = {20, 63, 64, 65, 130};
-                jali_bitmap a = random_bitmap(&seed, width[(size + kind + outside) % 5], 17, 50 + 40 * outside);
+                jali_bitmap a =
+                    random_bitmap(&seed, width[(size + kind + outside) % 5], 17, 50 + 40 * outside);
                 check_morphology(&a, &e[kind], outside);
                 jali_bitmap_free(ctx, &a);
             }
@@ -149,7 +150,8 @@ TEST(components_are_those_of_a_flood_fill)
     uint64_t seed = 3;
     int32_t label[100 * 40];
     for (int32_t round = 0; round < 40; round++) {
-        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 99, h = 1 + (int32_t)(next_random(&seed) >> 40) % 39;
+        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 99,
+                h = 1 + (int32_t)(next_random(&seed) >> 40) % 39;
         jali_bitmap a = random_bitmap(&seed, w, h, 20 + round * 3 / 2);
         plain p = plain_of(&a);
         for (int32_t variant = 0; variant < 4; variant++) {
@@ -218,7 +220,8 @@ TEST(medial_axis_is_the_ridge_of_the_chessboard_distance)
                 int32_t own = square_distance(&a, x, y, white, outside), best = own;
                 for (int32_t k = 0; k < 9; k++) {
                     int32_t u = x + k % 3 - 1, v = y + k / 3 - 1;
-                    if (u >= 0 && v >= 0 && u < w && v < h) best = MAX(best, square_distance(&a, u, v, white, outside));
+                    if (u >= 0 && v >= 0 && u < w && v < h)
+                        best = MAX(best, square_distance(&a, u, v, white, outside));
                 }
                 CHECK_INT(jali_bitmap_get(&axis, x, y), own > 0 && best == own);
             }
@@ -233,7 +236,8 @@ TEST(distances_are_those_of_all_pairs)
     static int32_t squared[130 * 40];
     uint64_t seed = 17;
     for (int32_t round = 0; round < 60; round++) {
-        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 130, h = 1 + (int32_t)(next_random(&seed) >> 40) % 40;
+        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 130,
+                h = 1 + (int32_t)(next_random(&seed) >> 40) % 40;
         int32_t first = round % 3 ? (int32_t)(next_random(&seed) >> 40) % h : 0;
         int32_t rows = round % 3 ? 1 + (int32_t)(next_random(&seed) >> 40) % (h - first) : h;
         jali_bitmap a = random_bitmap(&seed, w, h, round % 10 == 0 ? 0 : 1 + round % 5 * 6);

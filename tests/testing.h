@@ -16,10 +16,10 @@
 #include <jali/bitmap.h>
 #include "base/base.h"
 
-#define TEST(name)              static void name(void **state __attribute__((unused)))
-#define CHECK(condition)        assert_true(condition)
-#define CHECK_INT(got, wanted)  assert_int_equal((got), (wanted))
-#define CHECK_OK(call)          check_ok((call), #call, __FILE__, __LINE__)
+#define TEST(name)                 static void name(void **state __attribute__((unused)))
+#define CHECK(condition)           assert_true(condition)
+#define CHECK_INT(got, wanted)     assert_int_equal((got), (wanted))
+#define CHECK_OK(call)             check_ok((call), #call, __FILE__, __LINE__)
 #define CHECK_STATUS(call, wanted) assert_int_equal((call), (wanted))
 
 // The context of a test; a test that wants another makes its own.
@@ -100,7 +100,9 @@ static inline void close_thread_contexts(jali_context *by_threads[3])
 }
 
 /// An allocator that refuses its n-th request (counted from 1) and counts what is not given back.
-typedef struct refusing { int64_t request, refuse_at, outstanding; } refusing;
+typedef struct refusing {
+    int64_t request, refuse_at, outstanding;
+} refusing;
 
 static inline void *refusing_allocate(void *user, size_t bytes)
 {

@@ -12,8 +12,8 @@ extern "C" {
 /// Bits at and beyond width_px are always 0.
 typedef struct jali_bitmap {
     int32_t width_px, height_px;
-    int64_t stride;  // words a row, a multiple of 8 (64 bytes, one vector register)
-    uint64_t *word;  // [height_px * stride], 64-byte aligned
+    int64_t stride; // words a row, a multiple of 8 (64 bytes, one vector register)
+    uint64_t *word; // [height_px * stride], 64-byte aligned
 } jali_bitmap;
 
 /// A black bitmap.

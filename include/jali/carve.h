@@ -17,7 +17,7 @@ typedef struct jali_carve_options {
     double corner_radius_mm; // of the plate's corners; 0 (default) = sharp, up to half its shorter side
     double hole_diameter_mm; // a hole to hang the plate by, at the middle of its top; 0 (default) = none. In
                              // the frame when it is wide enough, else in a rounded ear above it
-    double hole_web_mm; // least solid around the hole; 2 (default), > 0
+    double hole_web_mm;      // least solid around the hole; 2 (default), > 0
 } jali_carve_options;
 
 JALI_API jali_carve_options jali_carve_defaults(void);

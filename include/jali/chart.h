@@ -10,20 +10,22 @@ extern "C" {
 
 /// The working grid and its place on the surface.
 ///
-/// Plane geometry lives on an integer lattice of unit_mm. A pixel is pixel_units wide, an even number, so that
-/// pixel centres are lattice points too. On plates unit_mm is a power of two and every coordinate is below
-/// 2^24 units: float32 (STL) holds each lattice point exactly (docs/decisions/0001-dyadic-lattice.md).
+/// Plane geometry lives on an integer lattice of unit_mm. A pixel is pixel_units wide, an even number, so
+/// that pixel centres are lattice points too. On plates unit_mm is a power of two and every coordinate is
+/// below 2^24 units: float32 (STL) holds each lattice point exactly (docs/decisions/0001-dyadic-lattice.md).
 ///
 /// Lattice: the origin is the lower left corner of the bitmap (margin included), x right, y up. Pixel (x, y)
-/// of the bitmap (y down) has its centre at ((2x + 1) pixel_units / 2, (2 (height_px - y) - 1) pixel_units / 2).
+/// of the bitmap (y down) has its centre at ((2x + 1) pixel_units / 2, (2 (height_px - y) - 1) pixel_units /
+/// 2).
 typedef struct jali_chart {
     int32_t width_px, height_px; // working grid, margin included
     int32_t margin_px;           // pixels on each side that are not picture
     bool outside_solid;          // what lies beyond the grid: solid (a frame, a surface) or nothing
     int32_t pixel_units;         // even, >= 16
     double unit_mm;              // length of a lattice unit
-    // The metric (g11, g12, g22) at knots every metric_step_px, for curved surfaces; NULL: flat, the identity.
-    float (*metric)[3];          // [metric_rows * metric_columns]
+    // The metric (g11, g12, g22) at knots every metric_step_px, for curved surfaces; NULL: flat, the
+    // identity.
+    float (*metric)[3]; // [metric_rows * metric_columns]
     int32_t metric_columns, metric_rows, metric_step_px;
 } jali_chart;
 

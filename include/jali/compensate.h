@@ -9,8 +9,8 @@ extern "C" {
 #endif
 
 typedef struct jali_compensate_options {
-    jali_shape shape;    // disc, or the paper's square
-    int32_t size_px;     // omega_c, odd: the solid loses (size_px - 1) / 2 at each edge; 1 changes nothing
+    jali_shape shape; // disc, or the paper's square
+    int32_t size_px;  // omega_c, odd: the solid loses (size_px - 1) / 2 at each edge; 1 changes nothing
     bool outside_solid;
 } jali_compensate_options;
 

@@ -22,17 +22,19 @@ JALI_API jali_connect_options jali_connect_defaults(void);
 
 /// Join the smallest white component to its nearest neighbour until one is left (Algorithm 2).
 ///
-/// The order is exactly the greedy one: a laid path belongs to its component and can shorten later joins. Ties:
-/// the component whose first pixel comes first in raster order; the target pixel, then the source pixel, that
-/// comes first in raster order.
+/// The order is exactly the greedy one: a laid path belongs to its component and can shorten later joins.
+/// Ties: the component whose first pixel comes first in raster order; the target pixel, then the source
+/// pixel, that comes first in raster order.
 ///   in     drawing   1 = solid, 4-connected
 ///   out    joined    may be drawing; one component (or none, when drawing has none)
 ///          bridges   NULL when not wanted
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT
-///   cost   a component is the smallest of a pair at most log2(pixels) times, so the searches together look at
+///   cost   a component is the smallest of a pair at most log2(pixels) times, so the searches together look
+///   at
 ///          O(area log area) pixels, 64 at a time
-JALI_API jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing, const jali_connect_options *opt,
-                                  jali_bitmap *joined, jali_bridges *bridges);
+JALI_API jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing,
+                                  const jali_connect_options *opt, jali_bitmap *joined,
+                                  jali_bridges *bridges);
 
 #ifdef __cplusplus
 }

@@ -39,21 +39,27 @@ extern "C" {
 
 /// The stages of a run, in order; names are those of folders, JSON keys and benches.
 enum {
-    JALI_STAGE_THRESHOLD, JALI_STAGE_PLACE, JALI_STAGE_OPTIMISE, JALI_STAGE_PREDICT, JALI_STAGE_TRACE,
-    JALI_STAGE_CARVE, JALI_STAGE_CHECK, JALI_STAGES
+    JALI_STAGE_THRESHOLD,
+    JALI_STAGE_PLACE,
+    JALI_STAGE_OPTIMISE,
+    JALI_STAGE_PREDICT,
+    JALI_STAGE_TRACE,
+    JALI_STAGE_CARVE,
+    JALI_STAGE_CHECK,
+    JALI_STAGES
 };
 JALI_API const char *jali_stage_name(int32_t stage);
 
 typedef struct jali_options {
     jali_threshold_options threshold;
-    jali_place_options place;        // size, working pixel, frame
-    jali_optimise_options optimise;  // its phi_e, phi_s, phi_v and paper count for place and predict as well
+    jali_place_options place;       // size, working pixel, frame
+    jali_optimise_options optimise; // its phi_e, phi_s, phi_v and paper count for place and predict as well
     jali_trace_options trace;
     jali_carve_options carve;
-    bool predict;                    // say what input, connected only and result come out as (default true)
-    bool recall;                     // with the share of fine detail that survives (default true; slower)
-    bool solid;                      // trace and carve too (default true); false = the image stages alone
-    bool check;                      // check the mesh (default true)
+    bool predict; // say what input, connected only and result come out as (default true)
+    bool recall;  // with the share of fine detail that survives (default true; slower)
+    bool solid;   // trace and carve too (default true); false = the image stages alone
+    bool check;   // check the mesh (default true)
 } jali_options;
 
 /// The defaults of all stages, with a frame of 2 mm.
@@ -61,14 +67,15 @@ JALI_API jali_options jali_defaults(void);
 
 /// Everything a run made. {0} is valid and empty.
 typedef struct jali_result {
-    int32_t threshold;               // grey level at and above which a pixel is white
-    jali_bitmap input;               // the picture in black and white, its own resolution
-    int32_t input_pieces;            // white components, 4-connected
+    int32_t threshold;    // grey level at and above which a pixel is white
+    jali_bitmap input;    // the picture in black and white, its own resolution
+    int32_t input_pieces; // white components, 4-connected
     jali_chart chart;
-    jali_optimised optimised;        // the mask and how it came about
-    // What comes out of the printer, when predicted: of the input as it is, connected only, and of the result.
+    jali_optimised optimised; // the mask and how it came about
+    // What comes out of the printer, when predicted: of the input as it is, connected only, and of the
+    // result.
     jali_prediction input_print, connected_print, result_print;
-    jali_contours contours;          // of the plate: picture, frame, hanging hole
+    jali_contours contours; // of the plate: picture, frame, hanging hole
     jali_mesh mesh;
     jali_check_report check;
     // Promises (docs/conventions.md); each says what was looked at, not what was hoped.

@@ -11,8 +11,8 @@ extern "C" {
 /// {0} is valid and empty.
 typedef struct jali_mesh {
     int32_t vertex_count, triangle_count;
-    double (*vertex)[3];     // [vertex_count], mm
-    int32_t (*triangle)[3];  // [triangle_count], counter-clockwise seen from outside
+    double (*vertex)[3];    // [vertex_count], mm
+    int32_t (*triangle)[3]; // [triangle_count], counter-clockwise seen from outside
 } jali_mesh;
 
 JALI_API void jali_mesh_free(jali_context *ctx, jali_mesh *mesh);

@@ -11,16 +11,16 @@ extern "C" {
 #endif
 
 typedef struct jali_optimise_options {
-    double phi_e_mm;        // how much wider a solid bar prints than drawn, >= 0 (0.1)
-    double phi_s_mm;        // narrowest solid that prints, > 0 (0.3)
-    double phi_v_mm;        // narrowest void that prints, > 0 (0.5)
-    double epsilon_mm;      // a thin tip longer than this counts as a feature, >= 0 (4)
-    bool paper;             // the paper's method: square elements, Table 1's kernels, its rounds
-    int32_t kernels_px[3];  // omega_c, omega_w, omega_b; 0 (default) = from the three figures above
-    int32_t most_rounds;    // of Algorithm 3, >= 1 (8); recall gains nothing after 6 to 8
-    double detail;          // weight of fine detail against wrong pixels, 0 to 100; times jali_adapt_options'
-                            // axis_worth of both tones (1)
-    bool details;           // keep the details and conflicts for overlays and counts (costs a third more time)
+    double phi_e_mm;       // how much wider a solid bar prints than drawn, >= 0 (0.1)
+    double phi_s_mm;       // narrowest solid that prints, > 0 (0.3)
+    double phi_v_mm;       // narrowest void that prints, > 0 (0.5)
+    double epsilon_mm;     // a thin tip longer than this counts as a feature, >= 0 (4)
+    bool paper;            // the paper's method: square elements, Table 1's kernels, its rounds
+    int32_t kernels_px[3]; // omega_c, omega_w, omega_b; 0 (default) = from the three figures above
+    int32_t most_rounds;   // of Algorithm 3, >= 1 (8); recall gains nothing after 6 to 8
+    double detail;         // weight of fine detail against wrong pixels, 0 to 100; times jali_adapt_options'
+                           // axis_worth of both tones (1)
+    bool details;          // keep the details and conflicts for overlays and counts (costs a third more time)
 } jali_optimise_options;
 
 JALI_API jali_optimise_options jali_optimise_defaults(void);
@@ -32,18 +32,18 @@ typedef struct jali_round {
 } jali_round;
 
 typedef struct jali_optimised {
-    jali_bitmap mask;             // what to carve: one 4-connected piece, nothing below the widths
-    int32_t kernels_px[3];        // omega_c, omega_w, omega_b as used
+    jali_bitmap mask;      // what to carve: one 4-connected piece, nothing below the widths
+    int32_t kernels_px[3]; // omega_c, omega_w, omega_b as used
     int32_t bridges, pieces_dropped;
     int64_t bridge_pixels;
     int32_t round_count;
-    jali_round *round;            // [round_count]
-    jali_round residual;          // details left in the mask: types A and B are zero
-    bool cycled;                  // the paper's rounds came back to an earlier picture and were stopped
+    jali_round *round;   // [round_count]
+    jali_round residual; // details left in the mask: types A and B are zero
+    bool cycled;         // the paper's rounds came back to an earlier picture and were stopped
     // With `details`, for overlays:
-    jali_details white, black;    // of the first round
+    jali_details white, black; // of the first round
     jali_bitmap conflict;
-    jali_bitmap bridge_mask;      // pixels that the bridges of the result made white
+    jali_bitmap bridge_mask; // pixels that the bridges of the result made white
 } jali_optimised;
 
 JALI_API void jali_optimised_free(jali_context *ctx, jali_optimised *result);

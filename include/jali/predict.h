@@ -9,28 +9,28 @@ extern "C" {
 #endif
 
 typedef struct jali_predict_options {
-    double picture_mm;    // width of the picture on the surface, > 0
-    double phi_e_mm;      // how much wider a solid bar prints than drawn (0.1)
-    double phi_s_mm;      // narrowest solid that prints (0.3)
-    double phi_v_mm;      // narrowest void that prints (0.5)
-    bool recall;          // also measure the medial axes (costs more than the rest); default true
+    double picture_mm; // width of the picture on the surface, > 0
+    double phi_e_mm;   // how much wider a solid bar prints than drawn (0.1)
+    double phi_s_mm;   // narrowest solid that prints (0.3)
+    double phi_v_mm;   // narrowest void that prints (0.5)
+    bool recall;       // also measure the medial axes (costs more than the rest); default true
 } jali_predict_options;
 
 JALI_API jali_predict_options jali_predict_defaults(void);
 
 /// The picture at its own resolution, prepared once for any number of predictions.
 typedef struct jali_reference {
-    jali_bitmap picture;              // fine grid
+    jali_bitmap picture;                // fine grid
     jali_bitmap axis_white, axis_black; // the picture's own resolution; empty without recall
-    int32_t factor;                   // fine pixels a picture pixel
+    int32_t factor;                     // fine pixels a picture pixel
     int64_t axis_white_count, axis_black_count;
 } jali_reference;
 
 typedef struct jali_prediction {
-    jali_bitmap printed;              // fine grid, the picture's area alone
-    double error_rate;                // share of fine pixels that differ from the picture, 0 .. 1
+    jali_bitmap printed;               // fine grid, the picture's area alone
+    double error_rate;                 // share of fine pixels that differ from the picture, 0 .. 1
     double recall_white, recall_black; // share of the picture's medial axis that prints in its tone, 0 .. 1
-    int32_t pieces;                   // solid pieces, 4-connected, surroundings included
+    int32_t pieces;                    // solid pieces, 4-connected, surroundings included
 } jali_prediction;
 
 /// Put the picture on the fine grid: 4 times finer than its pixels, or 2 or 1 where those are so small that
@@ -39,8 +39,8 @@ JALI_API jali_status jali_reference_create(jali_context *ctx, const jali_bitmap 
                                            const jali_predict_options *opt, jali_reference *reference);
 JALI_API void jali_reference_free(jali_context *ctx, jali_reference *reference);
 
-/// The forward model (docs/predict.md): the mask loses solid below phi_s, then voids below phi_v, then grows by
-/// phi_e / 2; exact discs throughout.
+/// The forward model (docs/predict.md): the mask loses solid below phi_s, then voids below phi_v, then grows
+/// by phi_e / 2; exact discs throughout.
 ///   in     mask       any resolution; the picture lies margin_px inside its border on all sides
 ///          outside_solid   what surrounds the mask
 ///   fails  JALI_NO_MEMORY, JALI_BAD_VALUE

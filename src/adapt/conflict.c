@@ -1,8 +1,10 @@
 // Conflicts between details of the two tones, and one round of treatment.
 //
 // Source:  Binary Image Carving for 3D Printing, section 4.4, Eqs. 4 and 5, Algorithm 3 lines 5 to 7.
-// Differs: the neighbourhood "within omega" is a window omega wide: with omega to each side 34 of 74 runs over
-//          real pictures go round in circles, with the window none of 32 did. Ties go to white, not to chance.
+// Differs: the neighbourhood "within omega" is a window omega wide: with omega to each side 34 of 74 runs
+// over
+//          real pictures go round in circles, with the window none of 32 did. Ties go to white, not to
+//          chance.
 // Checked: tests/test_adapt.c.
 #include <jali/adapt.h>
 #include "raster/raster.h"
@@ -14,13 +16,15 @@ static void treated(jali_context *ctx, const jali_details *details, jali_bitmap 
     combine(ctx, RULE_OR, &details->type[JALI_TYPE_A], &details->type[JALI_TYPE_B], mask);
 }
 
-// hits = the pixels of `details` with a pixel of `others` in a window of `size` px around them, added to conflict.
+// hits = the pixels of `details` with a pixel of `others` in a window of `size` px around them, added to
+// conflict.
 static jali_status add_conflicts(jali_context *ctx, const jali_bitmap *details, const jali_bitmap *others,
                                  int32_t size, jali_shape shape, jali_bitmap *scratch, jali_bitmap *conflict)
 {
     element window;
     int32_t odd = size | 1; // the window is centred on a pixel
-    jali_status status = shape == JALI_SHAPE_SQUARE ? element_square(ctx, odd, &window) : element_disc(ctx, odd, &window);
+    jali_status status =
+        shape == JALI_SHAPE_SQUARE ? element_square(ctx, odd, &window) : element_disc(ctx, odd, &window);
     if (status == JALI_OK) status = dilate(ctx, others, &window, false, scratch);
     element_free(ctx, &window);
     if (status != JALI_OK) return status;

@@ -1,7 +1,8 @@
 // Details of one tone: what an opening removes, sorted into types A, B and C.
 //
 // Source:  Binary Image Carving for 3D Printing, section 4.3, Eqs. 2 and 3.
-// Method:  components of the removed pixels as runs; the ring around each (3 x 3 dilation minus itself, in the
+// Method:  components of the removed pixels as runs; the ring around each (3 x 3 dilation minus itself, in
+// the
 //          other tone) is gathered in a window and its parts are counted as runs, in one pass.
 // Limits:  a detail that crosses the bitmap's border has the border as part of its ring only where the
 //          surroundings have the other tone.
@@ -34,12 +35,12 @@ typedef struct sorting {
     bool white, outside_solid, isolated_matters;
     int32_t epsilon_px;
     components c;
-    detail *detail;        // [c.count]
-    int32_t *order;        // [c.run_count], runs by detail
-    int32_t *row_of;       // [c.run_count]
-    uint64_t *window;      // two planes of scratch: the detail and its ring
+    detail *detail;   // [c.count]
+    int32_t *order;   // [c.run_count], runs by detail
+    int32_t *row_of;  // [c.run_count]
+    uint64_t *window; // two planes of scratch: the detail and its ring
     size_t window_capacity;
-    ring_run *run;         // of the ring
+    ring_run *run; // of the ring
     size_t run_capacity;
 } sorting;
 
@@ -101,7 +102,8 @@ static uint64_t *plane_row(const sorting *s, const frame *f, int32_t plane, int3
     return s->window + ((int64_t)plane * (f->rows + 2) + row + 1) * f->pitch + 1;
 }
 
-// Plane 0: the detail. Plane 1: the pixels of the other tone around it. Also learns whether it touches its own.
+// Plane 0: the detail. Plane 1: the pixels of the other tone around it. Also learns whether it touches its
+// own.
 static void draw_ring(const sorting *s, const frame *f, detail *d)
 {
     memset(s->window, 0, (size_t)(2 * (f->rows + 2) * f->pitch) * sizeof *s->window);
@@ -112,16 +114,21 @@ static void draw_ring(const sorting *s, const frame *f, detail *d)
     }
     uint64_t own = 0;
     for (int32_t y = 0; y < f->rows; y++) {
-        const uint64_t *above = plane_row(s, f, 0, y - 1), *row = plane_row(s, f, 0, y), *below = plane_row(s, f, 0, y + 1);
+        const uint64_t *above = plane_row(s, f, 0, y - 1), *row = plane_row(s, f, 0, y),
+                       *below = plane_row(s, f, 0, y + 1);
         uint64_t *ring = plane_row(s, f, 1, y);
         for (int32_t i = 0; i < f->words; i++) {
             uint64_t here = above[i] | row[i] | below[i];
-            uint64_t left = above[i - 1] | row[i - 1] | below[i - 1], right = above[i + 1] | row[i + 1] | below[i + 1];
+            uint64_t left = above[i - 1] | row[i - 1] | below[i - 1],
+                     right = above[i + 1] | row[i + 1] | below[i + 1];
             uint64_t around = (here | here << 1 | here >> 1 | left >> 63 | right << 63) & ~row[i];
-            uint64_t cross = (above[i] | below[i] | row[i] << 1 | row[i] >> 1 | row[i - 1] >> 63 | row[i + 1] << 63) & ~row[i];
+            uint64_t cross =
+                (above[i] | below[i] | row[i] << 1 | row[i] >> 1 | row[i - 1] >> 63 | row[i + 1] << 63) &
+                ~row[i];
             uint64_t white = window_word(s->picture, f->x0 + 64 * i, f->y0 + y, s->outside_solid);
             ring[i] = around & (s->white ? ~white : white);
-            own |= (s->white ? cross & white : around & ~white); // white touches by edges, black by corners too
+            own |=
+                (s->white ? cross & white : around & ~white); // white touches by edges, black by corners too
         }
     }
     d->touches_own = own != 0;
@@ -133,8 +140,8 @@ static int32_t root_of(ring_run *run, int32_t i)
     return i;
 }
 
-// Join the runs first .. second-1 of one row with those of the next, second .. end-1; returns how many parts fewer
-// there are.
+// Join the runs first .. second-1 of one row with those of the next, second .. end-1; returns how many parts
+// fewer there are.
 static int32_t join_rows(ring_run *run, int32_t first, int32_t second, int32_t end, int32_t reach)
 {
     int32_t fewer = 0;
@@ -144,13 +151,16 @@ static int32_t join_rows(ring_run *run, int32_t first, int32_t second, int32_t e
             run[MAX(a, b)].parent = MIN(a, b);
             fewer += a != b;
         }
-        if (run[i].x1 < run[j].x1) i++;
-        else j++;
+        if (run[i].x1 < run[j].x1)
+            i++;
+        else
+            j++;
     }
     return fewer;
 }
 
-// Connected parts of the ring, by its own tone's connectivity: runs row by row, joined with those of the row above.
+// Connected parts of the ring, by its own tone's connectivity: runs row by row, joined with those of the row
+// above.
 static jali_status count_parts(jali_context *ctx, sorting *s, const frame *f, int32_t *parts)
 {
     int32_t width = f->words * 64, above = 0, first = 0, count = 0;
@@ -183,9 +193,12 @@ static jali_status type_of(jali_context *ctx, sorting *s, detail *d, int32_t *ty
     draw_ring(s, &f, d);
     status = count_parts(ctx, s, &f, &parts);
     if (status != JALI_OK) return status;
-    if (parts > 1) *type = JALI_TYPE_A;
-    else if (d->axis_px > s->epsilon_px || (s->isolated_matters && !d->touches_own)) *type = JALI_TYPE_B;
-    else *type = JALI_TYPE_C;
+    if (parts > 1)
+        *type = JALI_TYPE_A;
+    else if (d->axis_px > s->epsilon_px || (s->isolated_matters && !d->touches_own))
+        *type = JALI_TYPE_B;
+    else
+        *type = JALI_TYPE_C;
     return JALI_OK;
 }
 
@@ -213,8 +226,11 @@ jali_status jali_adapt_details(jali_context *ctx, const jali_bitmap *picture, bo
     jali_status status;
     jali_bitmap removed = {0}, scratch = {0};
     element e[2] = {0}; // [white]
-    sorting s = {.picture = picture, .white = white, .outside_solid = opt->outside_solid,
-                 .isolated_matters = opt->isolated_matters, .epsilon_px = opt->epsilon_px};
+    sorting s = {.picture = picture,
+                 .white = white,
+                 .outside_solid = opt->outside_solid,
+                 .isolated_matters = opt->isolated_matters,
+                 .epsilon_px = opt->epsilon_px};
     *details = (jali_details){0};
     TRY(mask_elements(ctx, opt, &e[1], &e[0]));
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &removed));

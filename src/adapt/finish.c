@@ -1,10 +1,10 @@
 // The finish: nothing in the mask is thinner than the widths, and no neck either.
 //
-// Why cores: an opening keeps two discs that barely touch; the neck between them is thinner than any width and
-// parts in the print. Where the discs' centres are joined by a stroke there is no neck.
-// Ends: the first round takes thin solid off; from then on every step adds solid (strokes, filled voids, discs on
-// details of types A and B), so the number of black pixels falls until nothing changes. What is left is type C.
-// Dead ends: taking off in every round does not end, for a filled void can be too thin for the solid's element and
+// Why cores: an opening keeps two discs that barely touch; the neck between them is thinner than any width
+// and parts in the print. Where the discs' centres are joined by a stroke there is no neck. Ends: the first
+// round takes thin solid off; from then on every step adds solid (strokes, filled voids, discs on details of
+// types A and B), so the number of black pixels falls until nothing changes. What is left is type C. Dead
+// ends: taking off in every round does not end, for a filled void can be too thin for the solid's element and
 // the two undo each other for ever; thickening the tips too floods (recall of black 80 -> 76 %, 20 rounds).
 #include "adapt/widths.h"
 #include "base/base.h"
@@ -13,15 +13,17 @@
 
 enum { NECK_SHARE = 6 };
 
-// Where to set the element so that it covers (x, y): the fewest black pixels made white, less the thin ones covered.
-static void cheapest_cover(const jali_bitmap *mask, const jali_bitmap *thin, const element *e, int32_t x, int32_t y,
-                           int32_t at[2])
+// Where to set the element so that it covers (x, y): the fewest black pixels made white, less the thin ones
+// covered.
+static void cheapest_cover(const jali_bitmap *mask, const jali_bitmap *thin, const element *e, int32_t x,
+                           int32_t y, int32_t at[2])
 {
     int32_t best = INT32_MAX, even = e->size % 2 == 0;
     for (int32_t row = 0; row < e->size; row++) {
         int32_t dy = row - e->size / 2, half = e->half[abs(2 * dy + even) / 2];
         for (int32_t dx = -half; dx <= half - even; dx++) {
-            int32_t cost = count_element(mask, x - dx, y - dy, e, false) - count_element(thin, x - dx, y - dy, e, true);
+            int32_t cost =
+                count_element(mask, x - dx, y - dy, e, false) - count_element(thin, x - dx, y - dy, e, true);
             if (cost >= best) continue;
             best = cost;
             at[0] = x - dx;
@@ -31,7 +33,8 @@ static void cheapest_cover(const jali_bitmap *mask, const jali_bitmap *thin, con
 }
 
 // Cover the details of types A and B: an element at each. What it leaves of a long one comes next round.
-static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *opt, const element *e, jali_bitmap *mask)
+static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *opt, const element *e,
+                                   jali_bitmap *mask)
 {
     jali_details thin = {0};
     components c = {0};
@@ -55,8 +58,8 @@ done:
     return status;
 }
 
-// Cores up to `gap` px apart count as one: the neck between two discs of 12 px whose centres are 3 px apart is still
-// 11.6 px wide. (At 5 px, 10.9 wide, one of 24 real pictures came apart in the prediction.)
+// Cores up to `gap` px apart count as one: the neck between two discs of 12 px whose centres are 3 px apart
+// is still 11.6 px wide. (At 5 px, 10.9 wide, one of 24 real pictures came apart in the prediction.)
 static jali_status merge_near(jali_context *ctx, int32_t gap, jali_bitmap *cores)
 {
     element disc = {0};
@@ -75,8 +78,8 @@ done:
     return status;
 }
 
-jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_options *opt, bool thicken, jali_bitmap *mask,
-                             jali_bitmap *cores)
+jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_options *opt, bool thicken,
+                             jali_bitmap *mask, jali_bitmap *cores)
 {
     jali_status status;
     element solid = {0}, hollow = {0};

@@ -1,25 +1,25 @@
 // Pieces that are not worth their bridges.
 //
-// A speck of 0.4 mm in a wide void needs a bridge as broad as itself and several times as long: the picture is
-// truer without it. The bridges that connect would lay make a tree with a piece at each node, a prize at each
-// piece (wrong pixels and lost axes that it saves) and a cost at each bridge (wrong pixels that it makes).
-// Source:  prize-collecting Steiner tree; on a tree the best part follows from the leaves inwards.
+// A speck of 0.4 mm in a wide void needs a bridge as broad as itself and several times as long: the picture
+// is truer without it. The bridges that connect would lay make a tree with a piece at each node, a prize at
+// each piece (wrong pixels and lost axes that it saves) and a cost at each bridge (wrong pixels that it
+// makes). Source:  prize-collecting Steiner tree; on a tree the best part follows from the leaves inwards.
 #include "adapt/widths.h"
 #include "base/base.h"
 
-// A piece is worth three times the wrong pixels it saves: it is a feature of the picture, its bridge is not. At 1
-// the sky of islands.png loses two thirds of its stars, and the recall of white over 24 runs two points.
+// A piece is worth three times the wrong pixels it saves: it is a feature of the picture, its bridge is not.
+// At 1 the sky of islands.png loses two thirds of its stars, and the recall of white over 24 runs two points.
 enum { PRIZE = 3 };
 
 typedef struct piece_tree {
     components c;
-    int64_t *value;     // [c.count], the piece's prize, then its subtree's
-    int64_t *cost;      // [bridges], of a bridge
-    int32_t *first;     // [c.count + 1], bridges at a piece
-    int32_t *at;        // [2 * bridges], their numbers
-    int32_t *above;     // [c.count], bridge towards the root or -1
-    int32_t *order;     // [c.count], from the root outwards
-    bool *kept;         // [c.count]
+    int64_t *value; // [c.count], the piece's prize, then its subtree's
+    int64_t *cost;  // [bridges], of a bridge
+    int32_t *first; // [c.count + 1], bridges at a piece
+    int32_t *at;    // [2 * bridges], their numbers
+    int32_t *above; // [c.count], bridge towards the root or -1
+    int32_t *order; // [c.count], from the root outwards
+    bool *kept;     // [c.count]
 } piece_tree;
 
 static int32_t other_end(const jali_bridge *bridge, int32_t piece)
@@ -27,7 +27,8 @@ static int32_t other_end(const jali_bridge *bridge, int32_t piece)
     return bridge->part[0] == piece ? bridge->part[1] : bridge->part[0];
 }
 
-static jali_status build_tree(jali_context *ctx, const jali_bitmap *print, const jali_bridges *bridges, piece_tree *t)
+static jali_status build_tree(jali_context *ctx, const jali_bitmap *print, const jali_bridges *bridges,
+                              piece_tree *t)
 {
     jali_status status;
     TRY(label_components(ctx, print, true, 4, &t->c));
@@ -53,12 +54,14 @@ static void weigh_pieces(const jali_bitmap *drawing, const jali_bitmap *axis, in
     for (int32_t y = 0; y < t->c.height_px; y++)
         for (int32_t i = t->c.first[y]; i < t->c.first[y + 1]; i++) {
             int32_t x0 = t->c.span[i][0], x1 = t->c.span[i][1];
-            int64_t saved = WRONG_UNITS * (2 * count_run(drawing, y, x0, x1) - (x1 - x0)) + worth * count_run(axis, y, x0, x1);
+            int64_t saved = WRONG_UNITS * (2 * count_run(drawing, y, x0, x1) - (x1 - x0)) +
+                            worth * count_run(axis, y, x0, x1);
             t->value[t->c.label[i]] += PRIZE * saved;
         }
 }
 
-// Wrong pixels that a bridge makes: its width for each pixel of its way that should be black, less those it rights.
+// Wrong pixels that a bridge makes: its width for each pixel of its way that should be black, less those it
+// rights.
 static void weigh_bridges(const jali_bitmap *drawing, const jali_bitmap *print, const jali_bridges *bridges,
                           int32_t width_px, piece_tree *t)
 {
@@ -102,7 +105,8 @@ static void prune_tree(const jali_bridges *bridges, int32_t root, piece_tree *t)
     for (int32_t i = 0; i < t->c.count; i++) t->kept[i] = t->above[i] < 0;
     for (int32_t k = 1; k < count; k++) {
         int32_t piece = t->order[k], bridge = t->above[piece];
-        t->kept[piece] = t->value[piece] > t->cost[bridge] && t->kept[other_end(&bridges->bridge[bridge], piece)];
+        t->kept[piece] =
+            t->value[piece] > t->cost[bridge] && t->kept[other_end(&bridges->bridge[bridge], piece)];
     }
 }
 

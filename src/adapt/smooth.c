@@ -1,7 +1,8 @@
-// Smooth edges of a print: the input's pixels show as stairs and the search's discs as beads; both are shorter than half
-// a feature.
+// Smooth edges of a print: the input's pixels show as stairs and the search's discs as beads; both are
+// shorter than half a feature.
 //
-// Method:  twice the majority of 7 x 7, kept wherever the discs of both tones still fit; around places where they do
+// Method:  twice the majority of 7 x 7, kept wherever the discs of both tones still fit; around places where
+// they do
 //          not (tips, dots, corners of strokes) the print stays as it is.
 // Limits:  prints whose narrower width is below 10 px stay as they are: 7 x 7 would eat them.
 #include "adapt/widths.h"

@@ -1,7 +1,8 @@
 // A print that keeps to the widths and differs least from the drawing: discs are set where that helps most.
 //
 // Instead of: Algorithm 3's rounds (conflict.c), whose majority vote over whole regions floods hatchings.
-// Idea:    in a print, solids and voids are unions of discs. Begin with the opening and closing of the drawing;
+// Idea:    in a print, solids and voids are unions of discs. Begin with the opening and closing of the
+// drawing;
 //          at a place where a detail was lost set a disc of its tone; what that leaves too thin in the other
 //          tone, the pixels that no disc covers any more, goes with it. Keep the change if it lowers
 //              wrong pixels + worth * lost pixels of the axes of details.
@@ -11,11 +12,13 @@
 // Speed:   the places where a disc of each tone fits are kept up to date (fits), so what a new disc uncovers
 //          follows from one dilation in a small window; most places are decided by the disc's pixels alone.
 // Ends:    each kept change lowers a whole number that is never negative; passes are limited besides.
-// Limits:  windows are 128 px: where half a disc and twice the other one pass 63 px (a working pixel far finer
+// Limits:  windows are 128 px: where half a disc and twice the other one pass 63 px (a working pixel far
+// finer
 //          than the printer needs) there is no search, only the opening and closing.
 // Threads: bands of rows in two turns, even then odd; a change reaches less than half a band, so bands of one
 //          turn never meet and any number of threads gives the same print.
-// Dead end: a charge for the outline's length, so that a thin line prints as a line or not at all instead of as a row
+// Dead end: a charge for the outline's length, so that a thin line prints as a line or not at all instead of
+// as a row
 //          of dots: at 3 px a pixel of outline the dots hardly join, and 24 runs lose 0.3 points of error.
 // Figures: docs/results.md, with what each part brings.
 #include <jali/adapt.h>
@@ -27,38 +30,41 @@ enum { BAND_ROWS = 256, PAD_PX = 64, PASSES = 6, MAX_REACH_PX = 63, WRONG_ROUNDS
 
 static const double PASS_GAIN[PASSES] = {0.24, 0.08, 0, 0, 0, 0}; // of a disc's area
 
-// A change may leave so much of a disc's area too thin for its new tone; the finish deals with it. At 0 every third
-// disc is refused and the recall of white falls by 3 points; without a limit the finish floods voids (black -1.5).
+// A change may leave so much of a disc's area too thin for its new tone; the finish deals with it. At 0 every
+// third disc is refused and the recall of white falls by 3 points; without a limit the finish floods voids
+// (black -1.5).
 static const double THIN_SHARE = 0.2;
 
 // A tone's side of the search.
 typedef struct tone {
-    jali_bitmap axis;      // of the details of this tone
-    jali_bitmap open;      // places of the axis that are still worth a try
-    jali_bitmap fits;      // centres at which the disc fits into the print's pixels of this tone
+    jali_bitmap axis; // of the details of this tone
+    jali_bitmap open; // places of the axis that are still worth a try
+    jali_bitmap fits; // centres at which the disc fits into the print's pixels of this tone
     element disc;
     window_element fit;
     uint64_t row[WINDOW_MAX_ELEMENT]; // the disc, row by row, from its left edge
     int32_t area;
-    window blocked;        // centres of the other tone's discs that meet this disc set in the window's middle
-    int64_t worth;         // of a lost pixel of the axis; a wrong pixel counts WRONG_UNITS
+    window blocked; // centres of the other tone's discs that meet this disc set in the window's middle
+    int64_t worth;  // of a lost pixel of the axis; a wrong pixel counts WRONG_UNITS
 } tone;
 
 typedef struct stamping {
     jali_bitmap drawing, print; // padded by PAD_PX on each side
     tone side[2];               // [white]
-    window inner, fits_inner;   // where a change can reach, and where it can change which discs fit; wide windows
-    int32_t wide_rows;          // of a window that decides which discs fit around a change
-    int32_t rows;               // of a window that decides what a disc changes
+    window inner,
+        fits_inner;    // where a change can reach, and where it can change which discs fit; wide windows
+    int32_t wide_rows; // of a window that decides which discs fit around a change
+    int32_t rows;      // of a window that decides what a disc changes
     int32_t pass, turn, band_count;
-    jali_stamp_report *band;    // [band_count]
+    jali_stamp_report *band; // [band_count]
 } stamping;
 
 VECTORISED static int64_t count_window(const window *a, const window *b, int32_t rows)
 {
     int64_t count = 0;
     for (int32_t k = 0; k < rows; k++)
-        count += __builtin_popcountll(a->left[k] & b->left[k]) + __builtin_popcountll(a->right[k] & b->right[k]);
+        count +=
+            __builtin_popcountll(a->left[k] & b->left[k]) + __builtin_popcountll(a->right[k] & b->right[k]);
     return count;
 }
 
@@ -131,7 +137,8 @@ static void disc_and_after(const stamping *s, int32_t x0, int32_t y0, bool white
 {
     window other, fits, covered;
     const tone *t = &s->side[white];
-    const uint64_t *left = inner_rows(s, s->inner.left, s->rows), *right = inner_rows(s, s->inner.right, s->rows);
+    const uint64_t *left = inner_rows(s, s->inner.left, s->rows),
+                   *right = inner_rows(s, s->inner.right, s->rows);
     const uint64_t *blocked_left = inner_rows(s, t->blocked.left, s->rows);
     const uint64_t *blocked_right = inner_rows(s, t->blocked.right, s->rows);
     read_tone(s, x0, y0, s->rows, !white, &other);
@@ -147,8 +154,8 @@ static void disc_and_after(const stamping *s, int32_t x0, int32_t y0, bool white
     }
 }
 
-// Whether the change leaves too many pixels that no disc of their new tone covers: they would have to go again.
-// What was covered stays covered, for the tone only gains.
+// Whether the change leaves too many pixels that no disc of their new tone covers: they would have to go
+// again. What was covered stays covered, for the tone only gains.
 VECTORISED static bool leaves_thin(const stamping *s, const window *change, int32_t x, int32_t y, bool white)
 {
     window own, fits, covered;
@@ -200,8 +207,10 @@ static bool try_disc(stamping *s, jali_stamp_report *report, int32_t x, int32_t 
     if (leaves_thin(s, &change, x, y, white)) return false;
     window_flip(&s->print, x0, y0, s->rows, &change);
     refresh_fits(s, x, y);
-    if (white) report->white++;
-    else report->black++;
+    if (white)
+        report->white++;
+    else
+        report->black++;
     return true;
 }
 
@@ -222,7 +231,8 @@ static void stamp_band(void *shared, int32_t index)
                     int32_t bit = __builtin_ctzll(wrong);
                     left = bit == 63 ? 0 : ~UINT64_C(0) << (bit + 1);
                     int32_t x = i * 64 + bit;
-                    if (!try_disc(s, &s->band[band], x, y, white)) s->side[white].open.word[at] &= ~(UINT64_C(1) << bit);
+                    if (!try_disc(s, &s->band[band], x, y, white))
+                        s->side[white].open.word[at] &= ~(UINT64_C(1) << bit);
                 }
             }
 }
@@ -237,12 +247,14 @@ static void clear_pad(jali_bitmap *axis)
     }
 }
 
-// Keep every other place, like the white squares of a chessboard: a disc beside the best place is nearly as good.
+// Keep every other place, like the white squares of a chessboard: a disc beside the best place is nearly as
+// good.
 static void thin_out(jali_bitmap *places)
 {
     for (int32_t y = 0; y < places->height_px; y++)
         for (int64_t i = 0; i < places->stride; i++)
-            places->word[y * places->stride + i] &= y % 2 ? UINT64_C(0x5555555555555555) : UINT64_C(0xaaaaaaaaaaaaaaaa);
+            places->word[y * places->stride + i] &=
+                y % 2 ? UINT64_C(0x5555555555555555) : UINT64_C(0xaaaaaaaaaaaaaaaa);
 }
 
 // Passes over the open places of both tones until one keeps nothing.
@@ -274,8 +286,10 @@ static jali_status open_wrong_places(jali_context *ctx, stamping *s, jali_bitmap
     for (int32_t white = 0; white < 2; white++) {
         tone *t = &s->side[white];
         jali_bitmap_free(ctx, &t->open);
-        if (white) combine(ctx, RULE_AND_NOT, &s->drawing, &s->print, scratch);
-        else combine(ctx, RULE_AND_NOT, &s->print, &s->drawing, scratch);
+        if (white)
+            combine(ctx, RULE_AND_NOT, &s->drawing, &s->print, scratch);
+        else
+            combine(ctx, RULE_AND_NOT, &s->print, &s->drawing, scratch);
         TRY(medial_axis(ctx, scratch, true, false, t->disc.size, &t->open));
         clear_pad(&t->open);
         thin_out(&t->open);
@@ -344,9 +358,9 @@ static void draw_middle(const stamping *s, int32_t half, window *w)
     }
 }
 
-// How far things reach from a disc's centre, half a pixel aside: a change, as far as the other tone's discs that
-// meet the disc; the discs that decide about it, half a disc more; the pixels that decide about those, half again.
-// Returns the furthest.
+// How far things reach from a disc's centre, half a pixel aside: a change, as far as the other tone's discs
+// that meet the disc; the discs that decide about it, half a disc more; the pixels that decide about those,
+// half again. Returns the furthest.
 static int32_t plan_windows(stamping *s, int32_t solid, int32_t hollow)
 {
     int32_t large = (MAX(solid, hollow) + 1) / 2;
@@ -362,7 +376,8 @@ static int32_t plan_windows(stamping *s, int32_t solid, int32_t hollow)
         int32_t left = WINDOW_COLUMNS / 2 - t->fit.size / 2, top = s->wide_rows / 2 - t->fit.size / 2;
         for (int32_t k = 0; k < s->wide_rows; k++) {
             uint64_t disc = k >= top && k < top + t->fit.size ? t->row[k - top] : 0;
-            rest.left[k] = left == 64 ? ~UINT64_C(0) : ~(disc << left); // a disc of one pixel lies in the right half alone
+            rest.left[k] = left == 64 ? ~UINT64_C(0)
+                                      : ~(disc << left); // a disc of one pixel lies in the right half alone
             rest.right[k] = ~(disc >> (64 - left));
         }
         window_erode(&rest, s->wide_rows, &s->side[!white].fit, &t->blocked);
@@ -381,8 +396,10 @@ static jali_status find_fits(jali_context *ctx, stamping *s, jali_bitmap *scratc
     for (int32_t white = 0; white < 2; white++) {
         tone *t = &s->side[white];
         TRY(jali_bitmap_create(ctx, s->print.width_px, s->print.height_px, &t->fits));
-        if (white) combine(ctx, RULE_AND, &s->print, &s->print, scratch);
-        else invert(ctx, &s->print, scratch);
+        if (white)
+            combine(ctx, RULE_AND, &s->print, &s->print, scratch);
+        else
+            invert(ctx, &s->print, scratch);
         TRY(erode(ctx, scratch, &t->disc, white, &t->fits));
     }
 done:
@@ -407,7 +424,8 @@ jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, cons
     TRY(prepare_tone(ctx, &s, true, &scratch));
     TRY(prepare_tone(ctx, &s, false, &scratch));
     int32_t solid = s.side[1].disc.size, hollow = s.side[0].disc.size;
-    for (int32_t white = 0; white < 2; white++) s.side[white].worth = axis_worth_units(opt, white, &s.side[1].disc, &s.side[0].disc);
+    for (int32_t white = 0; white < 2; white++)
+        s.side[white].worth = axis_worth_units(opt, white, &s.side[1].disc, &s.side[0].disc);
     int32_t reach = plan_windows(&s, solid, hollow);
     s.band_count = (drawing->height_px + BAND_ROWS - 1) / BAND_ROWS;
     TRY(ALLOCATE_CLEARED(ctx, s.band, s.band_count));

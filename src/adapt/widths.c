@@ -11,9 +11,15 @@
 
 jali_adapt_options jali_adapt_defaults(void)
 {
-    return (jali_adapt_options){.shape = JALI_SHAPE_DISC, .solid_px = 12, .void_px = 20, .epsilon_px = 40,
-                                .isolated_matters = true, .outside_solid = true, .growth_px = 1,
-                                .axis_worth_white = 0.22, .axis_worth_black = 0.27};
+    return (jali_adapt_options){.shape = JALI_SHAPE_DISC,
+                                .solid_px = 12,
+                                .void_px = 20,
+                                .epsilon_px = 40,
+                                .isolated_matters = true,
+                                .outside_solid = true,
+                                .growth_px = 1,
+                                .axis_worth_white = 0.22,
+                                .axis_worth_black = 0.27};
 }
 
 static jali_status check_widths(jali_context *ctx, const jali_adapt_options *opt)
@@ -22,7 +28,8 @@ static jali_status check_widths(jali_context *ctx, const jali_adapt_options *opt
         return fail(ctx, JALI_BAD_VALUE, "widths of %d px (solid) and %d px (void) are outside 1 .. 4096 px",
                     opt->solid_px, opt->void_px);
     if (opt->growth_px < 1 || opt->growth_px % 2 == 0)
-        return fail(ctx, JALI_BAD_VALUE, "omega_c is %d px; an odd number from 1 on is accepted", opt->growth_px);
+        return fail(ctx, JALI_BAD_VALUE, "omega_c is %d px; an odd number from 1 on is accepted",
+                    opt->growth_px);
     return JALI_OK;
 }
 
@@ -57,7 +64,8 @@ done:
     return status;
 }
 
-jali_status printed_elements(jali_context *ctx, const jali_adapt_options *opt, element *solid, element *hollow)
+jali_status printed_elements(jali_context *ctx, const jali_adapt_options *opt, element *solid,
+                             element *hollow)
 {
     jali_status status;
     element growth = {0}, mask = {0};
@@ -77,7 +85,8 @@ done:
     return status;
 }
 
-int64_t axis_worth_units(const jali_adapt_options *opt, bool white, const element *solid, const element *hollow)
+int64_t axis_worth_units(const jali_adapt_options *opt, bool white, const element *solid,
+                         const element *hollow)
 {
     double worth = white ? opt->axis_worth_white : opt->axis_worth_black;
     return (int64_t)floor(WRONG_UNITS * worth * MIN(solid->size, hollow->size) + 0.5);

@@ -1,4 +1,5 @@
-// Erosion and dilation in a window: the same levels as raster/morphology.c, rows side by side in vector registers.
+// Erosion and dilation in a window: the same levels as raster/morphology.c, rows side by side in vector
+// registers.
 #include "adapt/window.h"
 #include "base/base.h"
 
@@ -55,7 +56,8 @@ void window_flip(jali_bitmap *a, int32_t x0, int32_t y0, int32_t rows, const win
     }
 }
 
-VECTORISED static void squeeze(const padded *l, const padded *r, padded *l_out, padded *r_out, int32_t rows, int32_t s)
+VECTORISED static void squeeze(const padded *l, const padded *r, padded *l_out, padded *r_out, int32_t rows,
+                               int32_t s)
 {
     uint64_t low = (UINT64_C(1) << s) - 1, high = ~UINT64_C(0) << (64 - s); // beyond counts as set
     for (int32_t k = 0; k < rows; k++) {
@@ -84,12 +86,14 @@ static void shrink(const window *a, int32_t rows, const window_element *e, bool 
 {
     padded l[WINDOW_MAX_ELEMENT / 2 + 2], r[WINDOW_MAX_ELEMENT / 2 + 2];
     bool even = e->size % 2 == 0;
-    if (even) pair(a, &l[0], &r[0], rows, reflect);
+    if (even)
+        pair(a, &l[0], &r[0], rows, reflect);
     else {
         memcpy(l[0].row, a->left, sizeof a->left);
         memcpy(r[0].row, a->right, sizeof a->right);
     }
-    for (int32_t i = 1; i < e->level_count; i++) squeeze(&l[i - 1], &r[i - 1], &l[i], &r[i], rows, e->step[i]);
+    for (int32_t i = 1; i < e->level_count; i++)
+        squeeze(&l[i - 1], &r[i - 1], &l[i], &r[i], rows, e->step[i]);
     for (int32_t i = 0; i < e->level_count; i++) {
         memset(l[i].above, 0xff, sizeof l[i].above);
         memset(r[i].above, 0xff, sizeof r[i].above);

@@ -1,7 +1,7 @@
 // A small window of a picture in registers: 128 columns, up to 128 rows. Internal to adapt.
 //
-// The search looks at hundreds of thousands of places and changes a few pixels at each; whole-picture operators
-// would cost a picture a place, a window costs a microsecond.
+// The search looks at hundreds of thousands of places and changes a few pixels at each; whole-picture
+// operators would cost a picture a place, a window costs a microsecond.
 #ifndef ADAPT_WINDOW_H
 #define ADAPT_WINDOW_H
 
@@ -18,8 +18,8 @@ typedef struct window {
 typedef struct window_element {
     int32_t size;
     int32_t level_count;
-    int32_t step[WINDOW_MAX_ELEMENT];      // how far level i reaches beyond level i-1
-    int32_t level_of[WINDOW_MAX_ELEMENT];  // by distance from the middle row
+    int32_t step[WINDOW_MAX_ELEMENT];     // how far level i reaches beyond level i-1
+    int32_t level_of[WINDOW_MAX_ELEMENT]; // by distance from the middle row
 } window_element;
 
 /// e->size <= WINDOW_MAX_ELEMENT.

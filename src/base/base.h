@@ -5,7 +5,11 @@
 #include <jali/base.h>
 #include <string.h>
 
-#define TRY(call) do { status = (call); if (status != JALI_OK) goto done; } while (0)
+#define TRY(call)                                                                                            \
+    do {                                                                                                     \
+        status = (call);                                                                                     \
+        if (status != JALI_OK) goto done;                                                                    \
+    } while (0)
 
 #define MIN(a, b) ((a) < (b) ? (a) : (b))
 #define MAX(a, b) ((a) > (b) ? (a) : (b))
@@ -29,28 +33,31 @@ jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t 
 
 /// The same, cleared.
 jali_status allocate_cleared(jali_context *ctx, void *where, size_t count, size_t size);
-#define ALLOCATE_CLEARED(ctx, pointer, count) \
+#define ALLOCATE_CLEARED(ctx, pointer, count)                                                                \
     allocate_cleared((ctx), &(pointer), (size_t)(count), sizeof *(pointer))
 
 /// Make the array at `where` hold at least `needed` items, keeping its first `*capacity` ones; grows by half.
 ///   fails  as allocate_array; the array is then unchanged
 jali_status grow_array(jali_context *ctx, void *where, size_t *capacity, size_t needed, size_t size);
-#define GROW(ctx, pointer, capacity, needed) \
+#define GROW(ctx, pointer, capacity, needed)                                                                 \
     grow_array((ctx), &(pointer), &(capacity), (size_t)(needed), sizeof *(pointer))
 
 /// Give a block back; NULL is accepted.
 void release(jali_context *ctx, void *block);
 
 /// Scratch memory of one stage: take pieces, then rewind to where the stage began.
-typedef struct arena_mark { void *chunk; size_t used; } arena_mark;
+typedef struct arena_mark {
+    void *chunk;
+    size_t used;
+} arena_mark;
 arena_mark arena_here(jali_context *ctx);
 void arena_rewind(jali_context *ctx, arena_mark mark);
 jali_status arena_take(jali_context *ctx, void *where, size_t count, size_t size);
 #define ARENA(ctx, pointer, count) arena_take((ctx), &(pointer), (size_t)(count), sizeof *(pointer))
 
-/// Call work(shared, i) for i = 0 .. count-1 on the pool's threads. The order is not defined, so each i writes
-/// to a place of its own; `work` allocates nothing. Items, not threads, set the split: any thread count
-/// gives the same result.
+/// Call work(shared, i) for i = 0 .. count-1 on the pool's threads. The order is not defined, so each i
+/// writes to a place of its own; `work` allocates nothing. Items, not threads, set the split: any thread
+/// count gives the same result.
 void parallel(jali_context *ctx, int32_t count, void (*work)(void *shared, int32_t index), void *shared);
 
 /// Report progress (fraction 0 .. 1 of this stage) and ask whether to go on.

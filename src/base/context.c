@@ -94,7 +94,8 @@ static void account(jali_context *ctx, size_t bytes)
 {
     uint64_t held = atomic_fetch_add(&ctx->held_bytes, bytes) + bytes;
     uint64_t peak = atomic_load(&ctx->peak_bytes);
-    while (held > peak && !atomic_compare_exchange_weak(&ctx->peak_bytes, &peak, held)) {}
+    while (held > peak && !atomic_compare_exchange_weak(&ctx->peak_bytes, &peak, held)) {
+    }
 }
 
 jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t size)
@@ -103,7 +104,8 @@ jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t 
     memcpy(where, &none, sizeof none);
     size_t bytes;
     if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2)
-        return fail(ctx, JALI_NO_MEMORY, "%zu items of %zu bytes are more than memory can address", count, size);
+        return fail(ctx, JALI_NO_MEMORY, "%zu items of %zu bytes are more than memory can address", count,
+                    size);
     if (ctx->opt.max_memory_bytes && atomic_load(&ctx->held_bytes) + bytes > ctx->opt.max_memory_bytes)
         return fail(ctx, JALI_LIMIT, "%.0f MB more would pass the memory limit of %.0f MB (--max-memory)",
                     (double)bytes / 1e6, (double)ctx->opt.max_memory_bytes / 1e6);
@@ -169,7 +171,8 @@ jali_status arena_take(jali_context *ctx, void *where, size_t count, size_t size
     memcpy(where, &none, sizeof none);
     size_t bytes;
     if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2)
-        return fail(ctx, JALI_NO_MEMORY, "%zu items of %zu bytes are more than memory can address", count, size);
+        return fail(ctx, JALI_NO_MEMORY, "%zu items of %zu bytes are more than memory can address", count,
+                    size);
     bytes = (bytes + HEAD_BYTES - 1) / HEAD_BYTES * HEAD_BYTES;
     if (!ctx->arena || ctx->arena->capacity - ctx->arena->used < bytes) {
         arena_chunk *chunk;

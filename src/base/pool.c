@@ -8,10 +8,10 @@
 struct pool {
     pthread_mutex_t lock;
     pthread_cond_t wake, finished;
-    pthread_t *thread;   // [started]
+    pthread_t *thread; // [started]
     int32_t started;
-    int32_t busy;        // workers that have not yet finished this run
-    uint64_t run;        // counts runs, so that a worker knows a new one
+    int32_t busy; // workers that have not yet finished this run
+    uint64_t run; // counts runs, so that a worker knows a new one
     bool closing;
     void (*work)(void *shared, int32_t index);
     void *shared;

@@ -12,9 +12,11 @@ jali_status jali_compensate(jali_context *ctx, const jali_bitmap *picture, const
     element e = {0};
     *thinned = (jali_bitmap){0};
     if (opt->size_px < 1 || opt->size_px % 2 == 0)
-        return fail(ctx, JALI_BAD_VALUE, "omega_c is %d px; an odd number from 1 on is accepted", opt->size_px);
+        return fail(ctx, JALI_BAD_VALUE, "omega_c is %d px; an odd number from 1 on is accepted",
+                    opt->size_px);
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, thinned));
-    TRY(opt->shape == JALI_SHAPE_SQUARE ? element_square(ctx, opt->size_px, &e) : element_disc(ctx, opt->size_px, &e));
+    TRY(opt->shape == JALI_SHAPE_SQUARE ? element_square(ctx, opt->size_px, &e)
+                                        : element_disc(ctx, opt->size_px, &e));
     TRY(erode(ctx, picture, &e, opt->outside_solid, thinned));
 done:
     element_free(ctx, &e);

@@ -1,8 +1,9 @@
 // Connectivity enforcement: the smallest solid part is joined to its nearest neighbour until one is left.
 //
 // Source:  Binary Image Carving for 3D Printing, section 4.1, Algorithm 2 (after Xu et al.).
-// Differs: ties, which the paper leaves open, go by raster order, so that the result is the same on every run.
-// Checked: tests/test_connect.c: the exact sequence of joins against a plain implementation on thousands of
+// Differs: ties, which the paper leaves open, go by raster order, so that the result is the same on every
+// run. Checked: tests/test_connect.c: the exact sequence of joins against a plain implementation on thousands
+// of
 //          small pictures.
 #include <jali/connect.h>
 #include "connect/search.h"
@@ -45,7 +46,8 @@ static int32_t unite_neighbours(joining *j, int32_t root, int32_t x, int32_t y)
     return root;
 }
 
-static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32_t label, int32_t x, int32_t y)
+static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32_t label, int32_t x,
+                             int32_t y)
 {
     if (jali_bitmap_get(j->solid, x, y)) {
         *root = join_with(j, *root, x, y);

@@ -49,7 +49,8 @@ int32_t label_at(const parts *p, int32_t x, int32_t y)
 {
     int32_t run = run_at(&p->c, x, y);
     if (run >= 0) return p->c.label[run];
-    for (run = p->row_bridge[y]; p->run[run].x0 > x || p->run[run].x1 <= x; run = p->run[run].below) {}
+    for (run = p->row_bridge[y]; p->run[run].x0 > x || p->run[run].x1 <= x; run = p->run[run].below) {
+    }
     return p->run[run].label;
 }
 
@@ -70,8 +71,10 @@ static void extend_box(int32_t box[4], int32_t y, int32_t x0, int32_t x1)
 static void append(parts *p, int32_t root, int32_t i)
 {
     p->run[i].next = -1;
-    if (p->tail[root] >= 0) p->run[p->tail[root]].next = i;
-    else p->head[root] = i;
+    if (p->tail[root] >= 0)
+        p->run[p->tail[root]].next = i;
+    else
+        p->head[root] = i;
     p->tail[root] = i;
     p->area[root] += p->run[i].x1 - p->run[i].x0;
     extend_box(p->box[root], p->run[i].y, p->run[i].x0, p->run[i].x1);

@@ -6,19 +6,24 @@
 
 /// A part is a set of runs with one root; runs of laid bridges are appended to those of the picture.
 typedef struct parts {
-    components c;            // the picture's runs and the labels they began with
-    int32_t alive;           // parts left
-    int32_t *parent;         // [c.count], union-find; the smallest label of a part is its root
-    int64_t *area;           // [c.count], at roots
-    int32_t (*box)[4];       // [c.count], at roots: x0, y0, x1, y1 (beyond)
-    int32_t *head, *tail;    // [c.count], at roots: the list of its runs
-    int32_t run_count;       // picture's and bridges' runs
+    components c;         // the picture's runs and the labels they began with
+    int32_t alive;        // parts left
+    int32_t *parent;      // [c.count], union-find; the smallest label of a part is its root
+    int64_t *area;        // [c.count], at roots
+    int32_t (*box)[4];    // [c.count], at roots: x0, y0, x1, y1 (beyond)
+    int32_t *head, *tail; // [c.count], at roots: the list of its runs
+    int32_t run_count;    // picture's and bridges' runs
     size_t run_capacity;
-    struct part_run { int32_t y, x0, x1, next, label, below; } *run; // below: next bridge run in the same row
-    int32_t *row_bridge;     // [height], first bridge run of the row or -1
+    struct part_run {
+        int32_t y, x0, x1, next, label, below;
+    } * run;             // below: next bridge run in the same row
+    int32_t *row_bridge; // [height], first bridge run of the row or -1
     int32_t heap_count;
     size_t heap_capacity;
-    struct part_key { int64_t area; int32_t root; } *heap; // smallest area first; stale entries are skipped
+    struct part_key {
+        int64_t area;
+        int32_t root;
+    } * heap; // smallest area first; stale entries are skipped
 } parts;
 
 jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *p);

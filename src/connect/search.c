@@ -1,8 +1,9 @@
 // Grow a part, 512 pixels at a time, until it meets another.
 //
 // Method:  the part is drawn into a window of its bounding box and a rim, then dilated by one pixel a step (a
-//          cross; for the octagonal metric 5 of 12 steps are squares, which makes a nearly regular octagon) and
-//          compared with the picture. A rim that is too narrow is doubled. Small parts fit into a few words.
+//          cross; for the octagonal metric 5 of 12 steps are squares, which makes a nearly regular octagon)
+//          and compared with the picture. A rim that is too narrow is doubled. Small parts fit into a few
+//          words.
 // Dead end: a breadth-first search over pixels visits the same places at 5 to 10 ns a pixel; this takes
 //          0.1 to 0.3.
 #include "connect/search.h"
@@ -13,8 +14,8 @@
 enum { FIRST_RIM_PX = 14 };
 
 typedef struct window {
-    int32_t x0, y0;        // upper left corner in the picture, x0 a multiple of 64
-    int32_t words, rows;   // without the border of one word and one row on each side
+    int32_t x0, y0;      // upper left corner in the picture, x0 a multiple of 64
+    int32_t words, rows; // without the border of one word and one row on each side
 } window;
 
 static window window_around(const jali_bitmap *solid, const int32_t box[4], int32_t rim)
@@ -54,30 +55,33 @@ static void draw_picture(const jali_bitmap *solid, const window *w, uint64_t *wo
                (size_t)w->words * sizeof *words);
 }
 
-// A step over the whole window as one array; returns whether it meets pixels of the picture that are not the part's.
-// What leaks into the border words is wiped after it.
-VECTORISED static bool grow_all(const uint64_t *before, const uint64_t *picture, uint64_t *after, int64_t pitch,
-                                int64_t n, bool square)
+// A step over the whole window as one array; returns whether it meets pixels of the picture that are not the
+// part's. What leaks into the border words is wiped after it.
+VECTORISED static bool grow_all(const uint64_t *before, const uint64_t *picture, uint64_t *after,
+                                int64_t pitch, int64_t n, bool square)
 {
     uint64_t met = 0;
     const uint64_t *above = before - pitch, *below = before + pitch;
     if (square)
         for (int64_t i = 0; i < n; i++) {
             uint64_t here = above[i] | before[i] | below[i];
-            uint64_t left = above[i - 1] | before[i - 1] | below[i - 1], right = above[i + 1] | before[i + 1] | below[i + 1];
+            uint64_t left = above[i - 1] | before[i - 1] | below[i - 1],
+                     right = above[i + 1] | before[i + 1] | below[i + 1];
             after[i] = here | here << 1 | here >> 1 | left >> 63 | right << 63;
             met |= after[i] & ~before[i] & picture[i];
         }
     else
         for (int64_t i = 0; i < n; i++) {
             uint64_t here = before[i];
-            after[i] = above[i] | below[i] | here | here << 1 | here >> 1 | before[i - 1] >> 63 | before[i + 1] << 63;
+            after[i] = above[i] | below[i] | here | here << 1 | here >> 1 | before[i - 1] >> 63 |
+                       before[i + 1] << 63;
             met |= after[i] & ~here & picture[i];
         }
     return met != 0;
 }
 
-static bool grow(const window *w, const uint64_t *picture, const uint64_t *before, uint64_t *after, bool square)
+static bool grow(const window *w, const uint64_t *picture, const uint64_t *before, uint64_t *after,
+                 bool square)
 {
     int64_t pitch = w->words + 2, first = pitch + 1, n = w->rows * pitch - 2;
     bool met = grow_all(before + first, picture + first, after + first, pitch, n, square);
@@ -86,7 +90,8 @@ static bool grow(const window *w, const uint64_t *picture, const uint64_t *befor
 }
 
 // The first pixel in raster order that a step met.
-static void first_met_pixel(const window *w, uint64_t *picture, uint64_t *before, uint64_t *after, int32_t pixel[2])
+static void first_met_pixel(const window *w, uint64_t *picture, uint64_t *before, uint64_t *after,
+                            int32_t pixel[2])
 {
     for (int32_t y = 0; y < w->rows; y++)
         for (int32_t i = 0; i < w->words; i++) {
@@ -104,11 +109,12 @@ static int64_t distance_of(jali_metric metric, int64_t dx, int64_t dy)
 }
 
 // The part's pixel nearest to `to`, at most `reach` rows and columns away; the first in raster order.
-static void nearest_own(const window *w, uint64_t *own, jali_metric metric, int32_t reach, const int32_t to[2],
-                        int32_t from[2])
+static void nearest_own(const window *w, uint64_t *own, jali_metric metric, int32_t reach,
+                        const int32_t to[2], int32_t from[2])
 {
     int64_t best = INT64_MAX;
-    int32_t y_end = MIN(to[1] + reach, w->y0 + w->rows - 1), x_end = MIN(to[0] + reach, w->x0 + 64 * w->words - 1);
+    int32_t y_end = MIN(to[1] + reach, w->y0 + w->rows - 1),
+            x_end = MIN(to[0] + reach, w->x0 + 64 * w->words - 1);
     for (int32_t y = MAX(to[1] - reach, w->y0); y <= y_end; y++) {
         const uint64_t *row = row_of(w, own, y - w->y0);
         int32_t x_first = MAX(to[0] - reach, w->x0) - w->x0;

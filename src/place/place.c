@@ -69,8 +69,9 @@ static jali_status size_on_plate(jali_context *ctx, const jali_picture *picture,
     return JALI_OK;
 }
 
-// The coarsest pixel of which the smaller width holds at least 8 and the growth of an edge, phi_e / 2, a whole
-// number: then the compensation is exact. A growth so small that this needs more than 16 a width is rounded.
+// The coarsest pixel of which the smaller width holds at least 8 and the growth of an edge, phi_e / 2, a
+// whole number: then the compensation is exact. A growth so small that this needs more than 16 a width is
+// rounded.
 static double automatic_pixel(const jali_place_options *opt)
 {
     double width_mm = MIN(opt->phi_s_mm, opt->phi_v_mm), growth_mm = opt->phi_e_mm / 2;

@@ -2,8 +2,10 @@
 //
 // Source:  Binary Image Carving for 3D Printing, sections 4.2 and 6 (Figs. 6, 11, 14): solids below phi_s and
 //          voids below phi_v do not appear, solids come out phi_e wider than drawn.
-// Model:   printed = grow(close(open(mask, phi_s), phi_v), phi_e / 2) with discs on a grid finer than the picture.
-//          A disc has whole diameter floor(phi / pixel), so that a bar of exactly phi prints wherever it lies.
+// Model:   printed = grow(close(open(mask, phi_s), phi_v), phi_e / 2) with discs on a grid finer than the
+// picture.
+//          A disc has whole diameter floor(phi / pixel), so that a bar of exactly phi prints wherever it
+//          lies.
 // Checked: tests/test_predict.c on bars of known width.
 #include <jali/predict.h>
 #include "raster/raster.h"
@@ -25,8 +27,8 @@ static int32_t choose_factor(double pixel_mm, double phi_s_mm)
     return factor;
 }
 
-jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture, const jali_predict_options *opt,
-                                  jali_reference *reference)
+jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture,
+                                  const jali_predict_options *opt, jali_reference *reference)
 {
     jali_status status;
     *reference = (jali_reference){0};
@@ -34,7 +36,8 @@ jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture,
         return fail(ctx, JALI_BAD_VALUE, "a prediction needs a picture with a width in mm above 0");
     int32_t factor = choose_factor(opt->picture_mm / picture->width_px, opt->phi_s_mm);
     reference->factor = factor;
-    TRY(jali_bitmap_create(ctx, picture->width_px * factor, picture->height_px * factor, &reference->picture));
+    TRY(jali_bitmap_create(ctx, picture->width_px * factor, picture->height_px * factor,
+                           &reference->picture));
     resize_nearest(ctx, picture, 0, 0, picture->width_px, picture->height_px, &reference->picture);
     if (opt->recall) {
         TRY(medial_axis(ctx, picture, true, true, 0, &reference->axis_white));
@@ -62,8 +65,8 @@ void jali_prediction_free(jali_context *ctx, jali_prediction *prediction)
 }
 
 // Share of the axis's pixels whose centre prints in the tone.
-static double recall_of(jali_context *ctx, const jali_bitmap *axis, int64_t axis_count, const jali_bitmap *printed,
-                        bool white)
+static double recall_of(jali_context *ctx, const jali_bitmap *axis, int64_t axis_count,
+                        const jali_bitmap *printed, bool white)
 {
     if (axis_count == 0) return 1;
     int64_t hit = count_combined(ctx, white ? RULE_AND : RULE_AND_NOT, axis, printed);
@@ -101,10 +104,11 @@ static jali_status place_mask(jali_context *ctx, const jali_bitmap *mask, int32_
                               int32_t fine_margin, jali_bitmap *fine)
 {
     jali_bitmap scaled;
-    jali_status status = jali_bitmap_create(ctx, fine->width_px - 2 * fine_margin, fine->height_px - 2 * fine_margin, &scaled);
+    jali_status status =
+        jali_bitmap_create(ctx, fine->width_px - 2 * fine_margin, fine->height_px - 2 * fine_margin, &scaled);
     if (status != JALI_OK) return status;
-    resize_nearest(ctx, mask, margin_px, margin_px, mask->width_px - 2 * margin_px, mask->height_px - 2 * margin_px,
-                   &scaled);
+    resize_nearest(ctx, mask, margin_px, margin_px, mask->width_px - 2 * margin_px,
+                   mask->height_px - 2 * margin_px, &scaled);
     fill(ctx, fine, outside);
     paste(&scaled, fine_margin, fine_margin, fine);
     jali_bitmap_free(ctx, &scaled);
@@ -140,10 +144,13 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
     prediction->error_rate = (double)count_combined(ctx, RULE_XOR, picture, &prediction->printed) /
                              ((double)picture->width_px * picture->height_px);
     if (opt->recall) {
-        TRY(jali_bitmap_create(ctx, reference->axis_white.width_px, reference->axis_white.height_px, &coarse));
+        TRY(jali_bitmap_create(ctx, reference->axis_white.width_px, reference->axis_white.height_px,
+                               &coarse));
         resize_nearest(ctx, &prediction->printed, 0, 0, picture->width_px, picture->height_px, &coarse);
-        prediction->recall_white = recall_of(ctx, &reference->axis_white, reference->axis_white_count, &coarse, true);
-        prediction->recall_black = recall_of(ctx, &reference->axis_black, reference->axis_black_count, &coarse, false);
+        prediction->recall_white =
+            recall_of(ctx, &reference->axis_white, reference->axis_white_count, &coarse, true);
+        prediction->recall_black =
+            recall_of(ctx, &reference->axis_black, reference->axis_black_count, &coarse, false);
     }
 done:
     if (status != JALI_OK) jali_prediction_free(ctx, prediction);

@@ -1,8 +1,9 @@
 // The medial axis of a tone, by Lantuejoul's formula on 3 x 3 squares.
 //
-// Method:  strips of rows with as many rows around them as there are rounds stay in the cache for all rounds; a strip
-//          that has run empty stops. With no limit on the rounds the strips would need the whole picture around them,
-//          so then the whole picture goes through the rounds together.
+// Method:  strips of rows with as many rows around them as there are rounds stay in the cache for all rounds;
+// a strip
+//          that has run empty stops. With no limit on the rounds the strips would need the whole picture
+//          around them, so then the whole picture goes through the rounds together.
 // Cost:    about 20 word operations a word and round.
 #include "raster/raster.h"
 #include "base/base.h"
@@ -11,19 +12,21 @@ enum { STRIP_ROWS = 64, SLOTS = 16, MOST_STRIP_ROUNDS = 64 };
 
 typedef struct axis_job {
     const jali_bitmap *a;
-    uint64_t flip, beyond;  // all ones to look at black; what lies outside, as seen after the flip
+    uint64_t flip, beyond; // all ones to look at black; what lies outside, as seen after the flip
     int32_t rounds;
     jali_bitmap *axis;
-    int64_t pitch, plane;   // words a row with guards; words of a plane of strip and surroundings
-    uint64_t *scratch;      // [SLOTS][2 planes]
+    int64_t pitch, plane; // words a row with guards; words of a plane of strip and surroundings
+    uint64_t *scratch;    // [SLOTS][2 planes]
 } axis_job;
 
 // out = the pixels of the middle row whose 3 x 3 are all set.
-VECTORISED static void erode_row(const uint64_t *above, const uint64_t *row, const uint64_t *below, uint64_t *out, int64_t n)
+VECTORISED static void erode_row(const uint64_t *above, const uint64_t *row, const uint64_t *below,
+                                 uint64_t *out, int64_t n)
 {
     for (int64_t i = 0; i < n; i++) {
         uint64_t here = above[i] & row[i] & below[i];
-        uint64_t left = above[i - 1] & row[i - 1] & below[i - 1], right = above[i + 1] & row[i + 1] & below[i + 1];
+        uint64_t left = above[i - 1] & row[i - 1] & below[i - 1],
+                 right = above[i + 1] & row[i + 1] & below[i + 1];
         out[i] = here & (here << 1 | left >> 63) & (here >> 1 | right << 63);
     }
 }
@@ -35,7 +38,8 @@ VECTORISED static uint64_t gather_row(const uint64_t *above, const uint64_t *mid
     uint64_t any = 0;
     for (int64_t i = 0; i < n; i++) {
         uint64_t here = above[i] | middle[i] | below[i];
-        uint64_t left = above[i - 1] | middle[i - 1] | below[i - 1], right = above[i + 1] | middle[i + 1] | below[i + 1];
+        uint64_t left = above[i - 1] | middle[i - 1] | below[i - 1],
+                 right = above[i + 1] | middle[i + 1] | below[i + 1];
         uint64_t covered = here | here << 1 | left >> 63 | here >> 1 | right << 63;
         axis[i] |= row[i] & ~covered;
         any |= middle[i];
@@ -43,7 +47,8 @@ VECTORISED static uint64_t gather_row(const uint64_t *above, const uint64_t *mid
     return any;
 }
 
-// Row y of a plane: its guard words, its columns beyond the width and, when y is no row of the picture, all of it.
+// Row y of a plane: its guard words, its columns beyond the width and, when y is no row of the picture, all
+// of it.
 static void set_beyond(const axis_job *job, int32_t y, uint64_t beyond, uint64_t *row)
 {
     int64_t n = job->pitch - 2;
@@ -58,12 +63,13 @@ static void set_beyond(const axis_job *job, int32_t y, uint64_t beyond, uint64_t
 static void load_row(const axis_job *job, int32_t y, uint64_t *row)
 {
     if (y >= 0 && y < job->a->height_px)
-        for (int64_t i = 0; i < job->a->stride; i++) row[i] = job->a->word[(int64_t)y * job->a->stride + i] ^ job->flip;
+        for (int64_t i = 0; i < job->a->stride; i++)
+            row[i] = job->a->word[(int64_t)y * job->a->stride + i] ^ job->flip;
     set_beyond(job, y, job->beyond, row);
 }
 
-// All rounds on the rows y0 - halo .. y1 + halo - 1. Each round the rows that are still right lose one at each end.
-// What lies beyond the picture counts for the erosion but covers nothing.
+// All rounds on the rows y0 - halo .. y1 + halo - 1. Each round the rows that are still right lose one at
+// each end. What lies beyond the picture counts for the erosion but covers nothing.
 static void strip_rounds(const axis_job *job, uint64_t *scratch, int32_t y0, int32_t y1, int32_t halo)
 {
     int64_t n = job->pitch - 2;
@@ -97,7 +103,8 @@ static void axis_strips(void *shared, int32_t slot)
 {
     const axis_job *job = shared;
     for (int32_t y0 = slot * STRIP_ROWS; y0 < job->a->height_px; y0 += SLOTS * STRIP_ROWS)
-        strip_rounds(job, job->scratch + slot * 2 * job->plane, y0, MIN(y0 + STRIP_ROWS, job->a->height_px), job->rounds + 1);
+        strip_rounds(job, job->scratch + slot * 2 * job->plane, y0, MIN(y0 + STRIP_ROWS, job->a->height_px),
+                     job->rounds + 1);
 }
 
 static jali_status axis_by_strips(jali_context *ctx, axis_job *job)
@@ -113,7 +120,8 @@ done:
     return status;
 }
 
-static jali_status axis_of_all(jali_context *ctx, const jali_bitmap *a, bool white, bool outside, jali_bitmap *axis)
+static jali_status axis_of_all(jali_context *ctx, const jali_bitmap *a, bool white, bool outside,
+                               jali_bitmap *axis)
 {
     jali_status status;
     jali_bitmap left = {0}, next = {0}, opened = {0};
@@ -148,7 +156,8 @@ jali_status medial_axis(jali_context *ctx, const jali_bitmap *a, bool white, boo
     jali_status status = jali_bitmap_create(ctx, a->width_px, a->height_px, axis);
     if (status != JALI_OK || !axis->word) return status;
     uint64_t flip = white ? 0 : ~UINT64_C(0);
-    axis_job job = {.a = a, .flip = flip, .beyond = outside ? ~UINT64_C(0) : 0, .rounds = rounds, .axis = axis};
+    axis_job job = {
+        .a = a, .flip = flip, .beyond = outside ? ~UINT64_C(0) : 0, .rounds = rounds, .axis = axis};
     bool strips = rounds > 0 && rounds <= MOST_STRIP_ROUNDS;
     status = strips ? axis_by_strips(ctx, &job) : axis_of_all(ctx, a, white, outside, axis);
     if (status != JALI_OK) jali_bitmap_free(ctx, axis);

@@ -1,4 +1,5 @@
-// Connected components on runs: one pass over the words finds the runs, a second joins those of adjacent rows.
+// Connected components on runs: one pass over the words finds the runs, a second joins those of adjacent
+// rows.
 //
 // Source:  run-based two-scan labelling with union-find (He, Chao, Suzuki 2008), on packed words.
 // Cost:    O(words + runs); memory 12 bytes a run, nothing a pixel.
@@ -71,8 +72,10 @@ static void unite(int32_t *parent, int32_t i, int32_t j)
 {
     i = root_of(parent, i);
     j = root_of(parent, j);
-    if (i < j) parent[j] = i;
-    else parent[i] = j;
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
 }
 
 // Runs of two rows touch when they overlap, or for 8-connectivity when they meet at a corner.
@@ -80,9 +83,12 @@ static void join_rows(const components *c, int32_t *parent, int32_t y, int32_t r
 {
     int32_t i = c->first[y - 1], i_end = c->first[y], j = c->first[y], j_end = c->first[y + 1];
     while (i < i_end && j < j_end) {
-        if (c->span[i][0] < c->span[j][1] + reach && c->span[j][0] < c->span[i][1] + reach) unite(parent, i, j);
-        if (c->span[i][1] < c->span[j][1]) i++;
-        else j++;
+        if (c->span[i][0] < c->span[j][1] + reach && c->span[j][0] < c->span[i][1] + reach)
+            unite(parent, i, j);
+        if (c->span[i][1] < c->span[j][1])
+            i++;
+        else
+            j++;
     }
 }
 
@@ -127,8 +133,10 @@ int32_t run_at(const components *c, int32_t x, int32_t y)
     int32_t low = c->first[y], high = c->first[y + 1];
     while (low < high) {
         int32_t middle = low + (high - low) / 2;
-        if (c->span[middle][1] <= x) low = middle + 1;
-        else high = middle;
+        if (c->span[middle][1] <= x)
+            low = middle + 1;
+        else
+            high = middle;
     }
     return low < c->first[y + 1] && c->span[low][0] <= x ? low : -1;
 }

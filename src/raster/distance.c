@@ -1,7 +1,9 @@
 // The exact Euclidean distance to the nearest pixel of a tone.
 //
-// Source:  Meijster, Roerdink, Hesselink, "A general algorithm for computing distance transforms in linear time",
-//          2000: distances along columns, then along each row the lower envelope of parabolas, all in whole numbers.
+// Source:  Meijster, Roerdink, Hesselink, "A general algorithm for computing distance transforms in linear
+// time",
+//          2000: distances along columns, then along each row the lower envelope of parabolas, all in whole
+//          numbers.
 // Threads: bands of columns, then bands of rows; each writes to places of its own.
 // Checked: tests/test_raster.c against all pairs of pixels.
 #include "raster/raster.h"
@@ -12,9 +14,10 @@ enum { BANDS = 32 };
 typedef struct distance_job {
     const jali_bitmap *a;
     bool white;
-    int32_t *squared;     // [rows * width]: first the distance along the column, then the squared one
+    int32_t *squared; // [rows * width]: first the distance along the column, then the squared one
     int32_t first_row, rows;
-    int32_t *scratch;     // [BANDS][3 * width]: sources of the envelope, where each begins, a row of columns' distances
+    int32_t *scratch; // [BANDS][3 * width]: sources of the envelope, where each begins, a row of columns'
+                      // distances
 } distance_job;
 
 static void band_of(int32_t band, int32_t count, int32_t *first, int32_t *end)
@@ -60,7 +63,8 @@ static int64_t parabola(int64_t x, int64_t source, int64_t column_distance)
 // The first column from which on the parabola of `right` is not above that of `left`.
 static int64_t passed_at(int64_t left, int64_t left_distance, int64_t right, int64_t right_distance)
 {
-    int64_t twice = right * right - left * left + right_distance * right_distance - left_distance * left_distance;
+    int64_t twice =
+        right * right - left * left + right_distance * right_distance - left_distance * left_distance;
     int64_t step = 2 * (right - left);
     return twice >= 0 ? (twice + step - 1) / step : -(-twice / step); // rounded up
 }
@@ -96,11 +100,12 @@ static void along_rows(void *shared, int32_t band)
     int32_t *scratch = job->scratch + (int64_t)band * 3 * width;
     band_of(band, job->rows, &y0, &y1);
     for (int32_t y = y0; y < y1; y++)
-        along_row(job->squared + (int64_t)y * width, width, scratch, scratch + width, scratch + 2 * (int64_t)width);
+        along_row(job->squared + (int64_t)y * width, width, scratch, scratch + width,
+                  scratch + 2 * (int64_t)width);
 }
 
-jali_status squared_distances(jali_context *ctx, const jali_bitmap *a, bool white, int32_t first_row, int32_t rows,
-                              int32_t *squared)
+jali_status squared_distances(jali_context *ctx, const jali_bitmap *a, bool white, int32_t first_row,
+                              int32_t rows, int32_t *squared)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);

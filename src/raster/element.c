@@ -62,7 +62,8 @@ jali_status element_sum(jali_context *ctx, const element *a, const element *b, e
     jali_status status = element_rows(ctx, a->size + b->size - 1, sum);
     for (int32_t i = 0; i < sum->rows; i++) {
         sum->half[i] = even;
-        for (int32_t j = -(b->rows - 1); j < b->rows; j++) { // row i of the sum = row i - j of a and row j of b
+        for (int32_t j = -(b->rows - 1); j < b->rows;
+             j++) { // row i of the sum = row i - j of a and row j of b
             int32_t row = i - j;
             if (row < 0) row = -row - even;
             if (row < a->rows) sum->half[i] = MAX(sum->half[i], a->half[row] + b->half[j < 0 ? -j : j]);

@@ -12,14 +12,25 @@ typedef struct logic_job {
     int64_t *count;
 } logic_job;
 
-VECTORISED static void combine_words(bitmap_rule rule, const uint64_t *a, const uint64_t *b, uint64_t *dst, int64_t n)
+VECTORISED static void combine_words(bitmap_rule rule, const uint64_t *a, const uint64_t *b, uint64_t *dst,
+                                     int64_t n)
 {
     switch (rule) {
-    case RULE_AND: for (int64_t i = 0; i < n; i++) dst[i] = a[i] & b[i]; break;
-    case RULE_OR: for (int64_t i = 0; i < n; i++) dst[i] = a[i] | b[i]; break;
-    case RULE_XOR: for (int64_t i = 0; i < n; i++) dst[i] = a[i] ^ b[i]; break;
-    case RULE_AND_NOT: for (int64_t i = 0; i < n; i++) dst[i] = a[i] & ~b[i]; break;
-    case RULE_OR_NOT: for (int64_t i = 0; i < n; i++) dst[i] = a[i] | ~b[i]; break;
+    case RULE_AND:
+        for (int64_t i = 0; i < n; i++) dst[i] = a[i] & b[i];
+        break;
+    case RULE_OR:
+        for (int64_t i = 0; i < n; i++) dst[i] = a[i] | b[i];
+        break;
+    case RULE_XOR:
+        for (int64_t i = 0; i < n; i++) dst[i] = a[i] ^ b[i];
+        break;
+    case RULE_AND_NOT:
+        for (int64_t i = 0; i < n; i++) dst[i] = a[i] & ~b[i];
+        break;
+    case RULE_OR_NOT:
+        for (int64_t i = 0; i < n; i++) dst[i] = a[i] | ~b[i];
+        break;
     }
 }
 
@@ -27,11 +38,21 @@ VECTORISED static int64_t count_words(bitmap_rule rule, const uint64_t *a, const
 {
     int64_t total = 0;
     switch (rule) {
-    case RULE_AND: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] & b[i]); break;
-    case RULE_OR: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] | b[i]); break;
-    case RULE_XOR: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] ^ b[i]); break;
-    case RULE_AND_NOT: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] & ~b[i]); break;
-    case RULE_OR_NOT: for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] | ~b[i]); break;
+    case RULE_AND:
+        for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] & b[i]);
+        break;
+    case RULE_OR:
+        for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] | b[i]);
+        break;
+    case RULE_XOR:
+        for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] ^ b[i]);
+        break;
+    case RULE_AND_NOT:
+        for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] & ~b[i]);
+        break;
+    case RULE_OR_NOT:
+        for (int64_t i = 0; i < n; i++) total += __builtin_popcountll(a[i] | ~b[i]);
+        break;
     }
     return total;
 }
@@ -50,10 +71,12 @@ static void combine_band(void *shared, int32_t band)
 {
     const logic_job *job = shared;
     int64_t from = (int64_t)band * BAND_WORDS;
-    combine_words(job->rule, job->a + from, job->b + from, job->dst + from, MIN(BAND_WORDS, job->words - from));
+    combine_words(job->rule, job->a + from, job->b + from, job->dst + from,
+                  MIN(BAND_WORDS, job->words - from));
 }
 
-void combine(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b, jali_bitmap *dst)
+void combine(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b,
+             jali_bitmap *dst)
 {
     logic_job job = {rule, a->word, b->word, dst->word, word_count(a), NULL};
     parallel(ctx, band_count(job.words), combine_band, &job);

@@ -1,6 +1,7 @@
 // A pixel takes the tone of most pixels of the 7 x 7 around it: stairs and beads go, what is 8 px wide stays.
 //
-// Method:  bit-sliced counting. Seven bits are added by four full adders into a three-bit number, along the row
+// Method:  bit-sliced counting. Seven bits are added by four full adders into a three-bit number, along the
+// row
 //          first, then plane by plane along the column; 49 counts fit into six planes.
 // Cost:    about 150 word operations a word, whatever the picture.
 // Checked: tests/test_raster.c against the definition.
@@ -28,7 +29,8 @@ static inline uint64_t full_add(uint64_t a, uint64_t b, uint64_t c, uint64_t *ca
     return half ^ c;
 }
 
-static inline sum3 add_seven(uint64_t a, uint64_t b, uint64_t c, uint64_t d, uint64_t e, uint64_t f, uint64_t g)
+static inline sum3 add_seven(uint64_t a, uint64_t b, uint64_t c, uint64_t d, uint64_t e, uint64_t f,
+                             uint64_t g)
 {
     sum3 s;
     uint64_t p, q, r, low;

@@ -1,12 +1,13 @@
 // Erosion, dilation, opening and closing by convex symmetric elements.
 //
-// Method:  a source row gives one eroded copy (a level) for each distinct reach of the element, each made from
+// Method:  a source row gives one eroded copy (a level) for each distinct reach of the element, each made
+// from
 //          the level before: E(a+s) = E(a) AND E(a) moved left by s AND E(a) moved right by s. Levels of the
 //          last `size` rows stand in a ring; an output row is the AND of one level of each. A dilation is the
 //          erosion of the complement by the reflected element.
-// Cost:    about 7 word operations a level and 1 a row of the element, per word; 8 words an AVX-512 instruction.
-// Limits:  src and dst are different bitmaps in erode and dilate.
-// Checked: tests/test_raster.c against the definition, every element up to 12 px, both values of outside.
+// Cost:    about 7 word operations a level and 1 a row of the element, per word; 8 words an AVX-512
+// instruction. Limits:  src and dst are different bitmaps in erode and dilate. Checked: tests/test_raster.c
+// against the definition, every element up to 12 px, both values of outside.
 #include "raster/raster.h"
 #include "base/base.h"
 
@@ -29,7 +30,7 @@ typedef struct plan {
     int64_t guard;                   // words on each side where levels must be right
     int64_t pitch;                   // words a ring row: 2 guard + 2 more words on each side, always `beyond`
     int64_t ring_words;
-    uint64_t *ring;                  // [strips][ring_words]: source row, then level by level, row by row
+    uint64_t *ring; // [strips][ring_words]: source row, then level by level, row by row
     int32_t strip_rows;
 } plan;
 
@@ -61,7 +62,8 @@ VECTORISED static void pair(const uint64_t *a, uint64_t *dst, int64_t n, bool re
         for (int64_t i = 0; i < n; i++) dst[i] = a[i] & (a[i] << 1 | a[i - 1] >> 63);
 }
 
-VECTORISED static void and_rows(const uint64_t *const *row, int32_t count, uint64_t flip, uint64_t *out, int64_t n)
+VECTORISED static void and_rows(const uint64_t *const *row, int32_t count, uint64_t flip, uint64_t *out,
+                                int64_t n)
 {
     for (int64_t i = 0; i < n; i += 8) {
         lanes all = *(const lanes *)(row[0] + i);
@@ -102,9 +104,12 @@ static void make_levels(const plan *p, uint64_t *ring, int32_t y)
     int64_t span = n + 2 * p->guard;
     for (int32_t level = 0; level < p->level_count; level++) {
         uint64_t *to = ring_row(p, ring, level, y) + lead - p->guard;
-        if (level == 0 && !is_even(p->e)) memcpy(to, from, (size_t)span * sizeof *to);
-        else if (level == 0) pair(from, to, span, p->reflect);
-        else squeeze(from, to, span, p->level_reach[level] - p->level_reach[level - 1]);
+        if (level == 0 && !is_even(p->e))
+            memcpy(to, from, (size_t)span * sizeof *to);
+        else if (level == 0)
+            pair(from, to, span, p->reflect);
+        else
+            squeeze(from, to, span, p->level_reach[level] - p->level_reach[level - 1]);
         from = to;
     }
 }
@@ -148,7 +153,8 @@ static jali_status plan_levels(jali_context *ctx, plan *p)
         for (int32_t reach; (reach = p->level_reach[p->level_count - 1]) < e->half[i]; p->level_count++) {
             int32_t widest = reach + 2 * reach + 1 - even;
             if (p->level_count == MAX_LEVELS)
-                return fail(ctx, JALI_BAD_VALUE, "a structuring element of %d px has too many distinct rows", e->size);
+                return fail(ctx, JALI_BAD_VALUE, "a structuring element of %d px has too many distinct rows",
+                            e->size);
             p->level_reach[p->level_count] = MIN(widest, e->half[i]);
         }
         p->level_of[i] = p->level_count - 1;
@@ -182,9 +188,15 @@ jali_status erode(jali_context *ctx, const jali_bitmap *src, const element *e, b
     return run(ctx, &p);
 }
 
-jali_status dilate(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside, jali_bitmap *dst)
+jali_status dilate(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside,
+                   jali_bitmap *dst)
 {
-    plan p = {.src = src, .dst = dst, .e = e, .flip = ~UINT64_C(0), .beyond = outside ? 0 : ~UINT64_C(0), .reflect = true};
+    plan p = {.src = src,
+              .dst = dst,
+              .e = e,
+              .flip = ~UINT64_C(0),
+              .beyond = outside ? 0 : ~UINT64_C(0),
+              .reflect = true};
     return run(ctx, &p);
 }
 
@@ -199,7 +211,8 @@ jali_status close_by(jali_context *ctx, const jali_bitmap *src, const element *e
                      jali_bitmap *scratch, jali_bitmap *dst)
 {
     jali_status status;
-    plan widen = {.src = src, .dst = scratch, .e = e, .flip = ~UINT64_C(0), .beyond = outside ? 0 : ~UINT64_C(0)};
+    plan widen = {
+        .src = src, .dst = scratch, .e = e, .flip = ~UINT64_C(0), .beyond = outside ? 0 : ~UINT64_C(0)};
     plan narrow = {.src = scratch, .dst = dst, .e = e, .beyond = ~UINT64_C(0), .reflect = true};
     TRY(run(ctx, &widen));
     TRY(run(ctx, &narrow));

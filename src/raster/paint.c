@@ -38,7 +38,8 @@ uint64_t window_word(const jali_bitmap *a, int32_t x, int32_t y, bool outside)
 }
 
 // The columns x0 .. x1-1 of row k of the element centred at (x, y); an empty range where it is cut off.
-static void element_row(const jali_bitmap *a, int32_t x, int32_t y, const element *e, int32_t k, int32_t span[3])
+static void element_row(const jali_bitmap *a, int32_t x, int32_t y, const element *e, int32_t k,
+                        int32_t span[3])
 {
     int32_t even = e->size % 2 == 0, dy = k - e->size / 2;
     int32_t half = e->half[abs(2 * dy + even) / 2];
@@ -72,16 +73,21 @@ int32_t count_element(const jali_bitmap *a, int32_t x, int32_t y, const element 
 
 line_walk walk_line(const int32_t from[2], const int32_t to[2])
 {
-    return (line_walk){.x = from[0], .y = from[1],
-                       .step_x = to[0] < from[0] ? -1 : 1, .step_y = to[1] < from[1] ? -1 : 1,
-                       .wide = llabs((int64_t)to[0] - from[0]), .high = llabs((int64_t)to[1] - from[1])};
+    return (line_walk){.x = from[0],
+                       .y = from[1],
+                       .step_x = to[0] < from[0] ? -1 : 1,
+                       .step_y = to[1] < from[1] ? -1 : 1,
+                       .wide = llabs((int64_t)to[0] - from[0]),
+                       .high = llabs((int64_t)to[1] - from[1])};
 }
 
 bool walk_on(line_walk *w)
 {
     if (w->gone_x == w->wide && w->gone_y == w->high) return false;
-    // Of the two next pixels the one nearer to the line: compare (gone_x + 1/2) / wide with (gone_y + 1/2) / high.
-    if (w->gone_y == w->high || (w->gone_x < w->wide && (2 * w->gone_x + 1) * w->high < (2 * w->gone_y + 1) * w->wide)) {
+    // Of the two next pixels the one nearer to the line: compare (gone_x + 1/2) / wide with (gone_y + 1/2) /
+    // high.
+    if (w->gone_y == w->high ||
+        (w->gone_x < w->wide && (2 * w->gone_x + 1) * w->high < (2 * w->gone_y + 1) * w->wide)) {
         w->x += w->step_x;
         w->gone_x++;
     } else {
@@ -91,7 +97,8 @@ bool walk_on(line_walk *w)
     return true;
 }
 
-void paint_stroke(jali_bitmap *dst, const int32_t from[2], const int32_t to[2], const element *brush, bool white)
+void paint_stroke(jali_bitmap *dst, const int32_t from[2], const int32_t to[2], const element *brush,
+                  bool white)
 {
     line_walk walk = walk_line(from, to);
     do paint_element(dst, walk.x, walk.y, brush, white);

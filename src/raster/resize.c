@@ -36,9 +36,11 @@ static void resize_band(void *shared, int32_t band)
     jali_bitmap *dst = job->dst;
     int32_t before = -1;
     for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, dst->height_px); y++) {
-        int32_t y_src = job->top + (int32_t)((2 * (int64_t)y + 1) * job->height / (2 * (int64_t)dst->height_px));
+        int32_t y_src =
+            job->top + (int32_t)((2 * (int64_t)y + 1) * job->height / (2 * (int64_t)dst->height_px));
         uint64_t *row = dst->word + (int64_t)y * dst->stride;
-        if (y_src == before) memcpy(row, row - dst->stride, (size_t)dst->stride * sizeof *row);
+        if (y_src == before)
+            memcpy(row, row - dst->stride, (size_t)dst->stride * sizeof *row);
         else {
             memset(row, 0, (size_t)dst->stride * sizeof *row);
             resize_row(job, y_src, y);

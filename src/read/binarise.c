@@ -27,7 +27,8 @@ static void binarise_band(void *shared, int32_t band)
                 word_of(job->from->grey + (int64_t)y * width + x, MIN(64, width - x), job->threshold);
 }
 
-jali_status jali_binarise(jali_context *ctx, const jali_picture *picture, int32_t threshold, jali_bitmap *bitmap)
+jali_status jali_binarise(jali_context *ctx, const jali_picture *picture, int32_t threshold,
+                          jali_bitmap *bitmap)
 {
     jali_status status = jali_bitmap_create(ctx, picture->width_px, picture->height_px, bitmap);
     if (status != JALI_OK) return status;

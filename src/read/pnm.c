@@ -1,6 +1,7 @@
 // PBM, PGM and PPM, plain (P1, P2, P3) and raw (P4, P5, P6), any maximum up to 65,535.
 //
-// Differs: a sample above the header's maximum is an error, not a guess. Of a file that holds several pictures
+// Differs: a sample above the header's maximum is an error, not a guess. Of a file that holds several
+// pictures
 //          the first is read.
 // Checked: tests/test_read.c, fuzz/fuzz_pnm.c.
 #include "read/read.h"

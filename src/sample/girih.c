@@ -3,7 +3,8 @@
 // triangular lattice, hexagons in its triangles, squares on its edges.
 //
 // Source:  E. H. Hankin, The drawing of geometric patterns in Saracenic art, 1925 (polygons in contact).
-// Weave:   a strand lies over where it leaves an edge towards the next one (counter-clockwise), under where it
+// Weave:   a strand lies over where it leaves an edge towards the next one (counter-clockwise), under where
+// it
 //          arrives; so it alternates along every strand, across tiles too. A crossing is drawn by cutting a
 //          gap beside the strand that lies over.
 #include "sample/samples.h"
