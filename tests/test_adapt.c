@@ -106,7 +106,7 @@ static int32_t plain_type(const plain *p, const int32_t *label, int32_t which, c
 {
     plain ring = plain_create(p->w + 2, p->h + 2);
     int32_t axis_px = 0;
-    bool touches_own = false;
+    bool touches_own = false, at_border = false;
     for (int32_t i = 0; i < p->w * p->h; i++) {
         if (label[i] != which) continue;
         axis_px += axis[i];
@@ -114,6 +114,7 @@ static int32_t plain_type(const plain *p, const int32_t *label, int32_t which, c
             for (int32_t dx = -1; dx <= 1; dx++) {
                 int32_t x = i % p->w + dx, y = i / p->w + dy;
                 if (plain_inside(p, x, y) && label[y * p->w + x] == which) continue;
+                at_border |= !plain_inside(p, x, y);
                 if (plain_at(p, x, y, opt->outside_solid) != white)
                     ring.white[(y + 1) * ring.w + x + 1] = 1;
                 else if (!white || !dx || !dy)
@@ -123,6 +124,7 @@ static int32_t plain_type(const plain *p, const int32_t *label, int32_t which, c
     int32_t parts = plain_pieces(&ring, true, white ? 8 : 4);
     plain_free(&ring);
     if (parts > 1) return JALI_TYPE_A;
+    if (white && !opt->outside_solid && at_border && touches_own) return JALI_TYPE_C; // the plate's own
     return axis_px > opt->epsilon_px || (opt->isolated_matters && !touches_own) ? JALI_TYPE_B : JALI_TYPE_C;
 }
 

@@ -182,6 +182,13 @@ static jali_status count_parts(jali_context *ctx, sorting *s, const frame *f, in
     return JALI_OK;
 }
 
+// A corner of a plate without a frame: no disc reaches into it, and nothing can be done about it.
+static bool is_plates_own(const sorting *s, const detail *d)
+{
+    bool at_border = d->x0 == 0 || d->y0 == 0 || d->x1 == s->picture->width_px || d->y1 == s->picture->height_px;
+    return s->white && !s->outside_solid && at_border && d->touches_own;
+}
+
 static jali_status type_of(jali_context *ctx, sorting *s, detail *d, int32_t *type)
 {
     frame f = {(d->x0 - 1) & ~63, d->y0 - 1, 0, d->y1 - d->y0 + 2, 0};
@@ -195,7 +202,7 @@ static jali_status type_of(jali_context *ctx, sorting *s, detail *d, int32_t *ty
     if (status != JALI_OK) return status;
     if (parts > 1)
         *type = JALI_TYPE_A;
-    else if (d->axis_px > s->epsilon_px || (s->isolated_matters && !d->touches_own))
+    else if (!is_plates_own(s, d) && (d->axis_px > s->epsilon_px || (s->isolated_matters && !d->touches_own)))
         *type = JALI_TYPE_B;
     else
         *type = JALI_TYPE_C;
