@@ -321,14 +321,27 @@ done:
     return status;
 }
 
-static jali_status check_something_left(jali_context *ctx, const optimising *o, const jali_bitmap *mask)
+// White pixels of the picture itself, the margin left out.
+static int64_t count_in_picture(const optimising *o, const jali_bitmap *a)
 {
-    if (any_white(ctx, mask)) return JALI_OK;
-    return fail(
-        ctx, JALI_NO_RESULT,
-        "nothing of the picture is wide enough to print: no solid of %.3g mm is left; a larger size, a finer "
-        "printer or a frame would help",
-        o->opt.phi_s_mm);
+    int32_t margin = o->chart->margin_px;
+    int64_t count = 0;
+    for (int32_t y = margin; y < a->height_px - margin; y++)
+        count += count_run(a, y, margin, a->width_px - margin);
+    return count;
+}
+
+static jali_status check_something_left(jali_context *ctx, const optimising *o, const jali_bitmap *drawing,
+                                        const jali_bitmap *mask)
+{
+    int32_t margin = o->chart->margin_px;
+    int64_t all = (int64_t)(mask->width_px - 2 * margin) * (mask->height_px - 2 * margin);
+    int64_t drawn = count_in_picture(o, drawing), left = count_in_picture(o, mask);
+    if (any_white(ctx, mask) && ((left > 0 && left < all) || drawn == 0 || drawn == all)) return JALI_OK;
+    return fail(ctx, JALI_NO_RESULT,
+                "nothing of the picture is wide enough to print: no %s of %.3g mm is left; a larger size or a finer "
+                "printer would help",
+                left == all ? "void" : "solid", left == all ? o->opt.phi_v_mm : o->opt.phi_s_mm);
 }
 
 jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,
@@ -341,7 +354,7 @@ jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const j
     TRY(o.opt.paper ? by_the_paper(ctx, &o, drawing, &result->mask)
                     : by_design_of_the_print(ctx, &o, drawing, &result->mask));
     TRY(finish(ctx, &o, &result->mask));
-    TRY(check_something_left(ctx, &o, &result->mask));
+    TRY(check_something_left(ctx, &o, drawing, &result->mask));
     TRY(count_residual(ctx, &o, &result->mask));
 done:
     if (status != JALI_OK) jali_optimised_free(ctx, result);
