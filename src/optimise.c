@@ -338,10 +338,11 @@ static jali_status check_something_left(jali_context *ctx, const optimising *o, 
     int64_t all = (int64_t)(mask->width_px - 2 * margin) * (mask->height_px - 2 * margin);
     int64_t drawn = count_in_picture(o, drawing), left = count_in_picture(o, mask);
     if (any_white(ctx, mask) && ((left > 0 && left < all) || drawn == 0 || drawn == all)) return JALI_OK;
-    return fail(ctx, JALI_NO_RESULT,
-                "nothing of the picture is wide enough to print: no %s of %.3g mm is left; a larger size or a finer "
-                "printer would help",
-                left == all ? "void" : "solid", left == all ? o->opt.phi_v_mm : o->opt.phi_s_mm);
+    return fail(
+        ctx, JALI_NO_RESULT,
+        "nothing of the picture is wide enough to print: no %s of %.3g mm is left; a larger size or a finer "
+        "printer would help",
+        left == all ? "void" : "solid", left == all ? o->opt.phi_v_mm : o->opt.phi_s_mm);
 }
 
 jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,

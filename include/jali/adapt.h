@@ -41,8 +41,8 @@ typedef struct jali_details {
 JALI_API void jali_details_free(jali_context *ctx, jali_details *details);
 
 /// Find and sort the details of one tone. A: its boundary in the other tone has more than one connected part.
-/// B: one part, but a medial axis longer than epsilon. C: the rest, tips mostly, and the corners of a plate without a
-/// frame, which no disc reaches.
+/// B: one part, but a medial axis longer than epsilon. C: the rest, tips mostly, and the corners of a plate
+/// without a frame, which no disc reaches.
 ///   in     picture   carries a margin of at least the element's size where its surroundings matter
 ///          white     which tone
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_BAD_VALUE

@@ -185,7 +185,8 @@ static jali_status count_parts(jali_context *ctx, sorting *s, const frame *f, in
 // A corner of a plate without a frame: no disc reaches into it, and nothing can be done about it.
 static bool is_plates_own(const sorting *s, const detail *d)
 {
-    bool at_border = d->x0 == 0 || d->y0 == 0 || d->x1 == s->picture->width_px || d->y1 == s->picture->height_px;
+    bool at_border =
+        d->x0 == 0 || d->y0 == 0 || d->x1 == s->picture->width_px || d->y1 == s->picture->height_px;
     return s->white && !s->outside_solid && at_border && d->touches_own;
 }
 

@@ -2,8 +2,10 @@
 //
 // Method:  the part is drawn into a window of its bounding box and a rim, then dilated by one pixel a step (a
 //          cross; for the octagonal metric 5 of 12 steps are squares, which makes a nearly regular octagon)
-//          and compared with the picture. A rim that is too narrow is doubled. Small parts fit into a few
-//          words.
+//          and compared with the picture. A rim that is too narrow is made four times as wide. After 8 steps
+//          many are taken at once: a ball of radius a and its copies b <= a apart make the ball of radius
+//          a + b. Where that meets a part the jump is halved, so a distance d costs log d passes and the
+//          answer is exact all the same.
 // Dead end: a breadth-first search over pixels visits the same places at 5 to 10 ns a pixel; this takes
 //          0.1 to 0.3.
 #include "connect/search.h"
@@ -11,20 +13,21 @@
 
 #include <stdlib.h>
 
-enum { FIRST_RIM_PX = 14 };
+enum { FIRST_RIM_PX = 14, FIRST_JUMP_PX = 8, MOST_JUMP_PX = 63 };
 
 typedef struct window {
     int32_t x0, y0;      // upper left corner in the picture, x0 a multiple of 64
     int32_t words, rows; // without the border of one word and one row on each side
 } window;
 
+// Cut off MOST_JUMP_PX beyond the picture: a jump can overshoot the part by that much and come back.
 static window window_around(const jali_bitmap *solid, const int32_t box[4], int32_t rim)
 {
     window w;
-    w.x0 = MAX(box[0] - rim, 0) / 64 * 64;
-    w.y0 = MAX(box[1] - rim, 0);
-    w.words = (MIN(box[2] + rim, solid->width_px) - w.x0 + 63) / 64;
-    w.rows = MIN(box[3] + rim, solid->height_px) - w.y0;
+    w.x0 = (MAX(box[0] - rim, -MOST_JUMP_PX) & ~63);
+    w.y0 = MAX(box[1] - rim, -MOST_JUMP_PX);
+    w.words = (MIN(box[2] + rim, solid->width_px + MOST_JUMP_PX) - w.x0 + 63) / 64;
+    w.rows = MIN(box[3] + rim, solid->height_px + MOST_JUMP_PX) - w.y0;
     return w;
 }
 
@@ -50,9 +53,10 @@ static int64_t word_count(const window *w)
 static void draw_picture(const jali_bitmap *solid, const window *w, uint64_t *words)
 {
     memset(words, 0, (size_t)word_count(w) * sizeof *words);
-    for (int32_t y = 0; y < w->rows; y++)
-        memcpy(row_of(w, words, y), solid->word + (int64_t)(w->y0 + y) * solid->stride + w->x0 / 64,
-               (size_t)w->words * sizeof *words);
+    int64_t first = w->x0 / 64, skip = MAX(-first, 0), count = MIN(w->words, solid->stride - first) - skip;
+    for (int32_t y = MAX(-w->y0, 0); y < MIN(w->rows, solid->height_px - w->y0); y++)
+        memcpy(row_of(w, words, y) + skip, solid->word + (int64_t)(w->y0 + y) * solid->stride + first + skip,
+               (size_t)count * sizeof *words);
 }
 
 // A step over the whole window as one array; returns whether it meets pixels of the picture that are not the
@@ -87,6 +91,54 @@ static bool grow(const window *w, const uint64_t *picture, const uint64_t *befor
     bool met = grow_all(before + first, picture + first, after + first, pitch, n, square);
     for (int32_t y = 0; y < w->rows; y++) row_of(w, after, y)[-1] = row_of(w, after, y)[w->words] = 0;
     return met;
+}
+
+// out = a, a moved by `px` (1 .. 63) to both sides and, for a cross, the rows above and below.
+VECTORISED static void spread_row(const uint64_t *a, const uint64_t *above, const uint64_t *below,
+                                  uint64_t *out, int64_t n, int32_t px)
+{
+    int32_t rest = 64 - px;
+    for (int64_t i = 0; i < n; i++)
+        out[i] = a[i] | a[i] << px | a[i - 1] >> rest | a[i] >> px | a[i + 1] << rest | above[i] | below[i];
+}
+
+VECTORISED static void join_row(const uint64_t *a, const uint64_t *above, const uint64_t *below,
+                                uint64_t *out, int64_t n)
+{
+    for (int64_t i = 0; i < n; i++) out[i] = a[i] | above[i] | below[i];
+}
+
+VECTORISED static bool meets(const uint64_t *before, const uint64_t *picture, const uint64_t *after,
+                             int64_t n)
+{
+    uint64_t met = 0;
+    for (int64_t i = 0; i < n; i++) met |= after[i] & ~before[i] & picture[i];
+    return met != 0;
+}
+
+// Row y, or the empty border row beyond the window.
+static const uint64_t *row_or_nothing(const window *w, uint64_t *words, int32_t y)
+{
+    return row_of(w, words, y < 0 || y >= w->rows ? -1 : y);
+}
+
+// A ball of crosses of radius a grows to a + px, px <= a, by the five copies of it px apart.
+static void jump_cross(const window *w, uint64_t *from, uint64_t *to, int32_t px)
+{
+    for (int32_t y = 0; y < w->rows; y++)
+        spread_row(row_of(w, from, y), row_or_nothing(w, from, y - px), row_or_nothing(w, from, y + px),
+                   row_of(w, to, y), w->words, px);
+}
+
+// A ball of squares of radius b grows to b + px, px <= 2 b + 1: along rows, then along columns.
+static void jump_square(const window *w, uint64_t *words, uint64_t *spare, int32_t px)
+{
+    const uint64_t *nothing = row_of(w, words, -1);
+    for (int32_t y = 0; y < w->rows; y++)
+        spread_row(row_of(w, words, y), nothing, nothing, row_of(w, spare, y), w->words, px);
+    for (int32_t y = 0; y < w->rows; y++)
+        join_row(row_of(w, spare, y), row_or_nothing(w, spare, y - px), row_or_nothing(w, spare, y + px),
+                 row_of(w, words, y), w->words);
 }
 
 // The first pixel in raster order that a step met.
@@ -129,17 +181,55 @@ static void nearest_own(const window *w, uint64_t *own, jali_metric metric, int3
     }
 }
 
-static bool is_square_step(jali_metric metric, int32_t k)
+// Square steps among the first k; the others are crosses.
+static int32_t square_steps(jali_metric metric, int32_t k)
 {
-    return metric == JALI_METRIC_OCTAGON && (k + 1) * 5 / 12 > k * 5 / 12;
+    return metric == JALI_METRIC_OCTAGON ? k * 5 / 12 : 0;
+}
+
+// How many steps can be taken at once after k: dilations commute, so the crosses come first, then the
+// squares.
+static int32_t jump_length(jali_metric metric, int32_t k, int32_t most)
+{
+    int32_t squares = square_steps(metric, k), crosses = k - squares;
+    for (int32_t jump = MIN(most, MOST_JUMP_PX); k >= FIRST_JUMP_PX && jump > 1; jump--) {
+        int32_t more_squares = square_steps(metric, k + jump) - squares;
+        if (jump - more_squares <= crosses && more_squares <= 2 * squares + 1) return jump;
+    }
+    return 1;
+}
+
+// `jump` steps after the first k, from `grown` into `next`; returns whether they meet another part.
+static bool take_steps(const window *w, search *s, jali_metric metric, int32_t k, int32_t jump)
+{
+    int32_t squares = square_steps(metric, k + jump) - square_steps(metric, k), crosses = jump - squares;
+    if (jump == 1) return grow(w, s->picture, s->grown, s->next, squares == 1);
+    if (crosses > 0)
+        jump_cross(w, s->grown, s->next, crosses);
+    else
+        memcpy(s->next, s->grown, (size_t)word_count(w) * sizeof *s->next);
+    if (squares > 0) jump_square(w, s->next, s->spare, squares);
+    return meets(s->grown, s->picture, s->next, word_count(w));
+}
+
+static void swap_grown(search *s)
+{
+    uint64_t *swap = s->grown;
+    size_t capacity = s->grown_capacity;
+    s->grown = s->next, s->grown_capacity = s->next_capacity;
+    s->next = swap, s->next_capacity = capacity;
 }
 
 static jali_status make_room(jali_context *ctx, search *s, const window *w)
 {
     jali_status status;
-    TRY(GROW(ctx, s->picture, s->picture_capacity, word_count(w)));
-    TRY(GROW(ctx, s->grown, s->grown_capacity, word_count(w)));
-    TRY(GROW(ctx, s->next, s->next_capacity, word_count(w)));
+    size_t count = (size_t)word_count(w);
+    TRY(GROW(ctx, s->picture, s->picture_capacity, count));
+    TRY(GROW(ctx, s->grown, s->grown_capacity, count));
+    TRY(GROW(ctx, s->next, s->next_capacity, count));
+    TRY(GROW(ctx, s->spare, s->spare_capacity, count));
+    memset(s->next, 0, count * sizeof *s->next);
+    memset(s->spare, 0, count * sizeof *s->spare);
 done:
     return status;
 }
@@ -154,19 +244,21 @@ jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const par
         TRY(make_room(ctx, s, &w));
         draw_part(p, root, &w, s->grown);
         draw_picture(solid, &w, s->picture);
-        memset(s->next, 0, (size_t)word_count(&w) * sizeof *s->next);
-        for (int32_t k = 0; k < MIN(rim, longest); k++) {
+        int32_t limit = MIN(rim, longest), most = limit;
+        for (int32_t k = 0; k < limit;) {
             if (stopping(ctx)) TRY(step(ctx, "connect", 0));
-            if (grow(&w, s->picture, s->grown, s->next, is_square_step(metric, k))) {
+            int32_t jump = jump_length(metric, k, MIN(most, limit - k));
+            if (!take_steps(&w, s, metric, k, jump)) {
+                swap_grown(s);
+                k += jump;
+            } else if (jump > 1) {
+                most = jump / 2; // a part is met within the jump: halve it
+            } else {
                 first_met_pixel(&w, s->picture, s->grown, s->next, bridge->to);
                 draw_part(p, root, &w, s->grown);
                 nearest_own(&w, s->grown, metric, k + 1, bridge->to, bridge->from);
                 return JALI_OK;
             }
-            uint64_t *swap = s->grown;
-            size_t capacity = s->grown_capacity;
-            s->grown = s->next, s->grown_capacity = s->next_capacity;
-            s->next = swap, s->next_capacity = capacity;
         }
     }
 done:
@@ -178,5 +270,6 @@ void search_free(jali_context *ctx, search *s)
     release(ctx, s->picture);
     release(ctx, s->grown);
     release(ctx, s->next);
+    release(ctx, s->spare);
     *s = (search){0};
 }
