@@ -204,7 +204,7 @@ static jali_status finish(jali_context *ctx, optimising *o, jali_bitmap *mask)
     jali_connect_options connect = {o->metric};
     jali_optimised *r = o->result;
     bool changed = true;
-    for (int32_t round = 0; changed; round++) {
+    for (int32_t round = 0; changed || round < 2; round++) { // the first only takes off, the second mends
         TRY(step(ctx, "finish", 0));
         TRY(jali_bitmap_copy(ctx, mask, &before));
         TRY(jali_adapt_cores(ctx, &o->widths, round > 0, mask, &cores));
