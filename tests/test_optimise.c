@@ -151,6 +151,27 @@ TEST(random_pictures_without_a_frame)
     close_thread_contexts(by_threads);
 }
 
+// Found by fuzz_pipeline: nothing to take off in the first round of the finish, yet a neck to mend.
+TEST(a_mask_that_opening_leaves_alone_is_mended_too)
+{
+    uint8_t grey[22];
+    uint32_t noise = 0x0a;
+    for (int32_t i = 0; i < 22; i++) {
+        noise = noise * 1664525 + 1013904223;
+        grey[i] = (i < 8 ? 0x0a >> i & 1 : noise >> 31) ? 255 : 0;
+    }
+    jali_picture picture = {11, 2, grey};
+    jali_options opt = jali_defaults();
+    opt.optimise.phi_e_mm = 0;
+    opt.optimise.phi_s_mm = opt.optimise.phi_v_mm = opt.optimise.epsilon_mm = 0.1;
+    opt.place.width_mm = 3.2;
+    opt.place.frame_mm = 1.5;
+    jali_result result;
+    CHECK_OK(jali_make(ctx, &picture, &opt, &result));
+    CHECK(result.printable && result.one_piece && result.closed);
+    jali_result_free(ctx, &result);
+}
+
 TEST(degenerate_pictures)
 {
     static const int32_t sizes[][2] = {{1, 1}, {2, 300}, {300, 1}, {64, 64}};
@@ -403,6 +424,7 @@ int main(void)
         cmocka_unit_test(the_judge_tells_long_tips_from_short_ones),
         cmocka_unit_test(random_pictures_end_in_one_printable_piece),
         cmocka_unit_test(random_pictures_without_a_frame),
+        cmocka_unit_test(a_mask_that_opening_leaves_alone_is_mended_too),
         cmocka_unit_test(degenerate_pictures),
         cmocka_unit_test(the_samples_give_the_golden_masks),
         cmocka_unit_test(real_pictures_keep_the_promises),
