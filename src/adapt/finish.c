@@ -32,6 +32,14 @@ static void cheapest_cover(const jali_bitmap *mask, const jali_bitmap *thin, con
     }
 }
 
+// A plate without a frame ends at the bitmap's border, and so must the element.
+static void move_inside(const jali_bitmap *mask, const element *e, int32_t at[2])
+{
+    int32_t before = e->size / 2, after = e->size - before;
+    at[0] = MAX(MIN(at[0], mask->width_px - after), MIN(before, mask->width_px / 2));
+    at[1] = MAX(MIN(at[1], mask->height_px - after), MIN(before, mask->height_px / 2));
+}
+
 // Cover the details of types A and B: an element at each. What it leaves of a long one comes next round.
 static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *opt, const element *e,
                                    jali_bitmap *mask)
@@ -48,6 +56,7 @@ static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *
                 next++;
                 int32_t at[2] = {0};
                 cheapest_cover(mask, &thin.type[type], e, c.span[i][0], y, at);
+                if (!opt->outside_solid) move_inside(mask, e, at);
                 paint_element(mask, at[0], at[1], e, true);
             }
         components_free(ctx, &c);
