@@ -68,11 +68,11 @@ int main(int argc, char **argv)
     copt.threads = 1;
     for (int i = 1; i < argc; i++) {
         if (!strcmp(argv[i], "--threads") && i + 1 < argc)
-            copt.threads = atoi(argv[++i]);
+            copt.threads = (int32_t)strtol(argv[++i], NULL, 10);
         else if (!strcmp(argv[i], "--only") && i + 1 < argc)
             r.only = argv[++i];
         else if (!strcmp(argv[i], "--tolerance") && i + 1 < argc)
-            r.tolerance_px = atof(argv[++i]);
+            r.tolerance_px = strtod(argv[++i], NULL);
         else if (!strcmp(argv[i], "--paper"))
             r.paper = true;
         else
