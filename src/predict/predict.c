@@ -13,6 +13,8 @@
 
 #include <math.h>
 
+// A picture of few pixels is split further: on a grid this coarse a bar of phi_s may be a pixel too thin.
+static const double COARSE_PX_PER_PHI_S = 12;
 static const double FINE_PX_PER_PHI_S = 32; // finer than this gains nothing: 1/32 of the thinnest feature
 
 jali_predict_options jali_predict_defaults(void)
@@ -22,8 +24,10 @@ jali_predict_options jali_predict_defaults(void)
 
 static int32_t choose_factor(double pixel_mm, double phi_s_mm)
 {
+    double span_px = phi_s_mm / pixel_mm;
     int32_t factor = 1;
-    while (factor < 4 && phi_s_mm / pixel_mm * factor < FINE_PX_PER_PHI_S) factor *= 2;
+    while (factor < 4 && span_px * factor < FINE_PX_PER_PHI_S) factor *= 2;
+    while (factor < 256 && span_px * factor < COARSE_PX_PER_PHI_S) factor *= 2;
     return factor;
 }
 
