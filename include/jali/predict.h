@@ -34,7 +34,7 @@ typedef struct jali_prediction {
 } jali_prediction;
 
 /// Put the picture on the fine grid: 4 times finer than its pixels, or 2 or 1 where those are so small that
-/// phi_s spans 32 fine pixels all the same, or finer until it spans 12.
+/// phi_s spans 32 fine pixels all the same, or finer until it spans 8.
 JALI_API jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture,
                                            const jali_predict_options *opt, jali_reference *reference);
 JALI_API void jali_reference_free(jali_context *ctx, jali_reference *reference);

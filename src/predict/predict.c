@@ -14,7 +14,7 @@
 #include <math.h>
 
 // A picture of few pixels is split further: on a grid this coarse a bar of phi_s may be a pixel too thin.
-static const double COARSE_PX_PER_PHI_S = 12;
+static const double COARSE_PX_PER_PHI_S = 8;
 static const double FINE_PX_PER_PHI_S = 32; // finer than this gains nothing: 1/32 of the thinnest feature
 
 jali_predict_options jali_predict_defaults(void)
