@@ -1,12 +1,7 @@
 // Parts as lists of runs with a queue by area: what Algorithm 2 asks for its smallest component.
 #include "connect/parts.h"
 #include "base/base.h"
-
-static int32_t root_of(int32_t *parent, int32_t i)
-{
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
+#include "base/sets.h"
 
 static bool before(const struct part_key *a, const struct part_key *b)
 {

@@ -6,6 +6,7 @@
 //
 // Checked: tests/test_check.c: cubes that share an edge or a vertex, open boxes, a flipped face, a torus.
 #include "mesh/topology.h"
+#include "base/sets.h"
 
 // One side of one triangle, in the bucket of its lower vertex.
 typedef struct side {
@@ -27,23 +28,6 @@ typedef struct edge_pass {
 static bool names_a_vertex_twice(const int32_t triangle[3])
 {
     return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-}
-
-static int32_t root_of(int32_t *parent, int32_t i)
-{
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-// The lower index stays the root, whatever the order of the unions.
-static void unite(int32_t *parent, int32_t i, int32_t j)
-{
-    i = root_of(parent, i);
-    j = root_of(parent, j);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
 }
 
 static void note(finding *f, int32_t a, int32_t b)

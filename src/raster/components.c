@@ -6,6 +6,7 @@
 // Checked: tests/test_raster.c against flood fill on random bitmaps, both connectivities.
 #include "raster/raster.h"
 #include "base/base.h"
+#include "base/sets.h"
 
 int32_t next_white(const uint64_t *row, int32_t x, int32_t width, uint64_t flip)
 {
@@ -59,23 +60,6 @@ static void find_band(void *shared, int32_t band)
             x = next_white(row, (*span)[1], a->width_px, job->flip);
         }
     }
-}
-
-static int32_t root_of(int32_t *parent, int32_t i)
-{
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-// The smaller root wins, so that a root is its component's first run in raster order.
-static void unite(int32_t *parent, int32_t i, int32_t j)
-{
-    i = root_of(parent, i);
-    j = root_of(parent, j);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
 }
 
 // Runs of two rows touch when they overlap, or for 8-connectivity when they meet at a corner.
