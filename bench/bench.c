@@ -16,6 +16,7 @@
 #include "bench.h"
 
 #include <dirent.h>
+#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -310,6 +311,8 @@ static void print_usage(void)
 
 int main(int argc, char **argv)
 {
+    mallopt(M_MMAP_THRESHOLD, 1 << 28); // as the command line does
+    mallopt(M_TRIM_THRESHOLD, 1 << 28);
     static char samples[] = "girih,lettering,halftone";
     settings set = {.context = jali_context_defaults(),
                     .runs = 5,
