@@ -220,6 +220,22 @@ static void swap_grown(search *s)
     s->next = swap, s->next_capacity = capacity;
 }
 
+// The rim is too narrow: what has grown so far goes into a wider window. Both are cut off alike at the
+// picture, so it is what would have grown there.
+static jali_status widen(jali_context *ctx, const window *narrow, const window *wide, search *s)
+{
+    size_t count = (size_t)word_count(wide);
+    jali_status status = GROW(ctx, s->next, s->next_capacity, count);
+    if (status != JALI_OK) return status;
+    memset(s->next, 0, count * sizeof *s->next);
+    int64_t left = (narrow->x0 - wide->x0) / 64;
+    for (int32_t y = 0; y < narrow->rows; y++)
+        memcpy(row_of(wide, s->next, y + narrow->y0 - wide->y0) + left, row_of(narrow, s->grown, y),
+               (size_t)narrow->words * sizeof *s->next);
+    swap_grown(s);
+    return JALI_OK;
+}
+
 static jali_status make_room(jali_context *ctx, search *s, const window *w)
 {
     jali_status status;
@@ -238,14 +254,14 @@ jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const par
                           jali_metric metric, search *s, jali_bridge *bridge)
 {
     jali_status status;
-    int32_t longest = solid->width_px + solid->height_px;
-    for (int32_t rim = FIRST_RIM_PX;; rim *= 4) {
-        window w = window_around(solid, p->box[root], rim);
-        TRY(make_room(ctx, s, &w));
-        draw_part(p, root, &w, s->grown);
+    int32_t longest = solid->width_px + solid->height_px, rim = FIRST_RIM_PX, k = 0;
+    window w = window_around(solid, p->box[root], rim);
+    TRY(make_room(ctx, s, &w));
+    draw_part(p, root, &w, s->grown);
+    for (;;) {
         draw_picture(solid, &w, s->picture);
         int32_t limit = MIN(rim, longest), most = limit;
-        for (int32_t k = 0; k < limit;) {
+        while (k < limit) {
             if (stopping(ctx)) TRY(step(ctx, "connect", 0));
             int32_t jump = jump_length(metric, k, MIN(most, limit - k));
             if (!take_steps(&w, s, metric, k, jump)) {
@@ -260,6 +276,11 @@ jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const par
                 return JALI_OK;
             }
         }
+        window narrow = w;
+        rim *= 4;
+        w = window_around(solid, p->box[root], rim);
+        TRY(widen(ctx, &narrow, &w, s));
+        TRY(make_room(ctx, s, &w));
     }
 done:
     return status;
