@@ -40,6 +40,21 @@ jali_status mesh_validate(jali_context *ctx, const jali_mesh *mesh)
     return JALI_OK;
 }
 
+int32_t mesh_round(jali_mesh *mesh)
+{
+    enum { BITS = 24, LEAST_EXPONENT = -60 };
+    double farthest = 0;
+    for (int32_t i = 0; i < mesh->vertex_count; i++)
+        for (int k = 0; k < 3; k++) farthest = MAX(farthest, fabs(mesh->vertex[i][k]));
+    int exponent;
+    frexp(farthest, &exponent); // farthest < 2^exponent, and rounding up may reach it: still a float32
+    exponent = MAX(exponent - BITS, LEAST_EXPONENT);
+    double unit = ldexp(1, exponent);
+    for (int32_t i = 0; i < mesh->vertex_count; i++)
+        for (int k = 0; k < 3; k++) mesh->vertex[i][k] = rint(mesh->vertex[i][k] / unit) * unit + 0.0;
+    return exponent;
+}
+
 static uint64_t place_hash(const double point[3])
 {
     uint64_t hash = 0;
