@@ -1,8 +1,11 @@
 // Times and memory of every stage and of the operators below, as a table.
 //
-//     bench [--sizes 1,5.8,...] [--threads N] [--runs N] [--samples A,B] [--images FOLDER] [CASE...]
+//     bench [--sizes 1,5.8,...] [--threads N] [--against N] [--runs N] [--samples A,B] [--images FOLDER]
+//           [CASE...]
 //
 //   --sizes    megapixels at which the samples are drawn (1,5.8); "none": the images alone
+//   --threads  how many (1)
+//   --against  time each case with so many threads too, run by run in turns, and print how much faster it is
 //   --samples  which (girih,lettering,halftone)
 //   --images   a folder of PNG files (../shared/data/images when it is there); "none": the samples alone
 //   --runs     the median of at most so many (5); fewer once a case has taken 5 s
@@ -32,6 +35,7 @@ static const double same_grid_from_px = 50e6;
 
 typedef struct settings {
     jali_context_options context;
+    int32_t against; // threads, 0 = no comparison
     int32_t runs, size_count;
     double mpixel[MOST_SIZES];
     char *samples; // comma-separated
@@ -120,41 +124,66 @@ done:
 
 // --- Measuring
 
-// A context of its own, so that the peak is the case's.
-static jali_status measure(const settings *set, const bench_case *c, subject *s, double *ms, double *peak_mb)
+typedef struct timing {
+    double ms, against_ms, peak_mb;
+} timing;
+
+static jali_status time_run(jali_context *ctx, const bench_case *c, subject *s, double *ms)
 {
-    jali_context *ctx;
-    jali_status status = jali_context_create(&set->context, &ctx);
-    if (status != JALI_OK) return status;
-    double took[MOST_RUNS], total = 0;
-    int32_t count = 0;
-    do {
-        double begun = now_ms();
-        status = c->run(ctx, s, c->size);
-        took[count] = now_ms() - begun;
-        total += took[count++];
-    } while (status == JALI_OK && count < set->runs && total < enough_ms);
+    double begun = now_ms();
+    jali_status status = c->run(ctx, s, c->size);
+    *ms = now_ms() - begun;
     if (status != JALI_OK) fprintf(stderr, "%s of %s: %s\n", c->name, s->name, jali_message(ctx));
-    *ms = median(took, count);
-    *peak_mb = (double)jali_peak_memory_bytes(ctx) / 1e6;
+    return status;
+}
+
+// Contexts of its own, so that the peak is the case's. Runs that are compared take turns: what else the
+// machine does slows both.
+static jali_status measure(const settings *set, const bench_case *c, subject *s, timing *out)
+{
+    jali_status status;
+    jali_context *ctx = NULL, *other = NULL;
+    jali_context_options against = set->context;
+    against.threads = set->against;
+    double took[MOST_RUNS], other_took[MOST_RUNS] = {0}, total = 0;
+    int32_t count = 0;
+    TRY(jali_context_create(&set->context, &ctx));
+    if (set->against) TRY(jali_context_create(&against, &other));
+    do {
+        TRY(time_run(ctx, c, s, &took[count]));
+        if (other) TRY(time_run(other, c, s, &other_took[count]));
+        total += took[count] + other_took[count];
+        count++;
+    } while (count < set->runs && total < enough_ms);
+    *out =
+        (timing){median(took, count), median(other_took, count), (double)jali_peak_memory_bytes(ctx) / 1e6};
+done:
+    jali_context_free(other);
     jali_context_free(ctx);
     return status;
 }
 
+static void print_or_blank(bool there, double value)
+{
+    if (there)
+        printf(" %10.3f |", value);
+    else
+        printf(" %10s |", "");
+}
+
 static jali_status measure_row(const settings *set, const bench_case *c, bool paper, subject *s)
 {
-    double ms, peak_mb;
-    jali_status status = measure(set, c, s, &ms, &peak_mb);
+    timing t;
+    jali_status status = measure(set, c, s, &t);
     if (status != JALI_OK) return status;
     double working = (double)s->chart.width_px * s->chart.height_px;
     printf("| %-15s | %-14s | %-7s | %6.1f | %6.1f | %10.3f | %8.3f | %7.1f |", c->name, s->name,
            paper ? "--paper" : "default", 1e-6 * s->picture.width_px * s->picture.height_px, 1e-6 * working,
-           ms, 1e6 * ms / pixels_of(s, c), peak_mb);
+           t.ms, 1e6 * t.ms / pixels_of(s, c), t.peak_mb);
     double other = c->peer ? c->peer(s, c->size, MIN(set->runs, 5)) : -1;
-    if (other >= 0)
-        printf(" %10.3f |\n", other);
-    else
-        printf(" %10s |\n", "");
+    print_or_blank(other >= 0, other);
+    if (set->against) print_or_blank(true, t.ms / t.against_ms);
+    printf("\n");
     fflush(stdout);
     return JALI_OK;
 }
@@ -285,6 +314,8 @@ static bool read_arguments(int argc, char **argv, settings *set)
             read_sizes(value, set), i++;
         else if (!strcmp(argv[i], "--threads"))
             set->context.threads = (int32_t)strtol(value, NULL, 10), i++;
+        else if (!strcmp(argv[i], "--against"))
+            set->against = (int32_t)strtol(value, NULL, 10), i++;
         else if (!strcmp(argv[i], "--runs"))
             set->runs = (int32_t)strtol(value, NULL, 10), i++;
         else if (!strcmp(argv[i], "--samples"))
@@ -301,10 +332,11 @@ static bool read_arguments(int argc, char **argv, settings *set)
 
 static void print_usage(void)
 {
-    fprintf(stderr,
-            "bench [--sizes 1,5.8] [--threads N] [--runs 1..%d] [--samples A,B] [--images FOLDER] [CASE...]\n"
-            "cases:",
-            MOST_RUNS);
+    fprintf(
+        stderr,
+        "bench [--sizes 1,5.8] [--threads N] [--against N] [--runs 1..%d] [--samples A,B] [--images FOLDER] "
+        "[CASE...]\ncases:",
+        MOST_RUNS);
     for (int32_t i = 0; i < bench_case_count; i++) fprintf(stderr, " %s", bench_cases[i].name);
     fprintf(stderr, "\n");
 }
@@ -329,8 +361,9 @@ int main(int argc, char **argv)
     if (jali_context_create(&set.context, &ctx) != JALI_OK) return 1;
     printf("jali %s, %d thread%s, median of %d\n\n", jali_version(), set.context.threads,
            set.context.threads == 1 ? "" : "s", set.runs);
-    printf("| case | picture | way | Mpixel in | working | ms | ns/px | peak MB | peer ms |\n"
-           "|---|---|---|---|---|---|---|---|---|\n");
+    printf("| case | picture | way | Mpixel in | working | ms | ns/px | peak MB | peer ms |");
+    if (set.against) printf(" times faster with %d threads |", set.against);
+    printf("\n|---|---|---|---|---|---|---|---|---|%s\n", set.against ? "---|" : "");
     jali_status status = measure_samples(ctx, &set);
     if (status == JALI_OK) status = measure_images(ctx, &set);
     if (status != JALI_OK) fprintf(stderr, "%s\n", jali_message(ctx));
