@@ -1,18 +1,27 @@
-// The thread pool: workers sleep on a condition, a run hands out indices by an atomic counter.
+// The thread pool: a run hands out indices by an atomic counter; workers that are there take part.
+//
+// Why so:  a picture of a megapixel makes some hundred runs of 10 to 100 us, and a sleeper takes about as
+// long to
+//          wake. So a worker looks out for the next run for a while before it sleeps, and nobody waits for
+//          one that comes late: who has not entered when the indices are out does not enter any more.
+// Checked: every test that compares thread counts; the thread sanitizer.
 #include "base/pool.h"
 
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 
+enum { LOOKS = 4000 }; // of a worker for the next run, about 50 us
+
 struct pool {
     pthread_mutex_t lock;
     pthread_cond_t wake, finished;
     pthread_t *thread; // [started]
     int32_t started;
-    int32_t busy; // workers that have not yet finished this run
-    uint64_t run; // counts runs, so that a worker knows a new one
-    bool closing;
+    atomic_int inside; // workers that take part in this run; changes under the lock
+    atomic_uint runs;  // counts runs, so that a worker knows a new one; changes under the lock
+    bool open;         // this run can still be entered
+    atomic_bool closing;
     void (*work)(void *shared, int32_t index);
     void *shared;
     int32_t count;
@@ -25,21 +34,31 @@ static void drain(pool *p)
     while ((index = atomic_fetch_add(&p->next, 1)) < p->count) p->work(p->shared, index);
 }
 
+static inline void look_away(void)
+{
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+}
+
 static void *worker(void *argument)
 {
     pool *p = argument;
-    uint64_t seen = 0;
-    pthread_mutex_lock(&p->lock);
-    for (;;) {
-        while (p->run == seen && !p->closing) pthread_cond_wait(&p->wake, &p->lock);
-        if (p->closing) break;
-        seen = p->run;
+    unsigned seen = 0;
+    while (!atomic_load(&p->closing)) {
+        for (int32_t i = 0; i < LOOKS && atomic_load(&p->runs) == seen; i++) look_away();
+        pthread_mutex_lock(&p->lock);
+        while (p->runs == seen && !p->closing) pthread_cond_wait(&p->wake, &p->lock);
+        seen = p->runs;
+        bool enters = p->open;
+        p->inside += enters;
         pthread_mutex_unlock(&p->lock);
+        if (!enters) continue;
         drain(p);
         pthread_mutex_lock(&p->lock);
-        if (--p->busy == 0) pthread_cond_signal(&p->finished);
+        if (--p->inside == 0) pthread_cond_signal(&p->finished);
+        pthread_mutex_unlock(&p->lock);
     }
-    pthread_mutex_unlock(&p->lock);
     return NULL;
 }
 
@@ -63,14 +82,18 @@ void pool_run(pool *p, int32_t count, void (*work)(void *shared, int32_t index),
     p->work = work;
     p->shared = shared;
     p->count = count;
-    atomic_store(&p->next, 0);
-    p->busy = p->started;
-    p->run++;
+    p->next = 0;
+    p->open = true;
+    p->runs++;
     pthread_cond_broadcast(&p->wake);
     pthread_mutex_unlock(&p->lock);
     drain(p);
     pthread_mutex_lock(&p->lock);
-    while (p->busy > 0) pthread_cond_wait(&p->finished, &p->lock);
+    p->open = false;
+    pthread_mutex_unlock(&p->lock);
+    for (int32_t i = 0; i < LOOKS && atomic_load(&p->inside) > 0; i++) look_away();
+    pthread_mutex_lock(&p->lock);
+    while (p->inside > 0) pthread_cond_wait(&p->finished, &p->lock);
     pthread_mutex_unlock(&p->lock);
 }
 
