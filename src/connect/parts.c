@@ -62,19 +62,6 @@ static void extend_box(int32_t box[4], int32_t y, int32_t x0, int32_t x1)
     box[3] = MAX(box[3], y + 1);
 }
 
-// Append run `i` to its part's list.
-static void append(parts *p, int32_t root, int32_t i)
-{
-    p->run[i].next = -1;
-    if (p->tail[root] >= 0)
-        p->run[p->tail[root]].next = i;
-    else
-        p->head[root] = i;
-    p->tail[root] = i;
-    p->area[root] += p->run[i].x1 - p->run[i].x0;
-    extend_box(p->box[root], p->run[i].y, p->run[i].x0, p->run[i].x1);
-}
-
 jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y)
 {
     jali_status status = GROW(ctx, p->run, p->run_capacity, p->run_count + 1);
@@ -82,7 +69,10 @@ jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t la
     int32_t i = p->run_count++;
     p->run[i] = (struct part_run){y, x, x + 1, -1, label, p->row_bridge[y]};
     p->row_bridge[y] = i;
-    append(p, root, i);
+    p->run[p->tail[root]].next = i;
+    p->tail[root] = i;
+    p->area[root]++;
+    extend_box(p->box[root], y, x, x + 1);
     return JALI_OK;
 }
 
@@ -100,21 +90,32 @@ int32_t unite_parts(parts *p, int32_t a, int32_t b)
     return root;
 }
 
+// Runs part by part, so that walking a part's list goes on through memory.
 static void fill_parts(parts *p)
 {
-    for (int32_t i = 0; i < p->c.count; i++) {
+    const components *c = &p->c;
+    for (int32_t i = 0; i < c->count; i++) {
         p->parent[i] = i;
-        p->head[i] = p->tail[i] = -1;
+        p->tail[i] = 0;
         p->box[i][0] = p->box[i][1] = INT32_MAX;
         p->box[i][2] = p->box[i][3] = 0;
     }
-    for (int32_t y = 0; y < p->c.height_px; y++) {
+    for (int32_t i = 0; i < c->run_count; i++) p->tail[c->label[i]]++;
+    for (int32_t i = 0, first = 0; i < c->count; i++) {
+        p->head[i] = first;
+        first += p->tail[i];
+        p->tail[i] = p->head[i] - 1;
+    }
+    for (int32_t y = 0; y < c->height_px; y++) {
         p->row_bridge[y] = -1;
-        for (int32_t i = p->c.first[y]; i < p->c.first[y + 1]; i++) {
-            p->run[i] = (struct part_run){y, p->c.span[i][0], p->c.span[i][1], -1, p->c.label[i], -1};
-            append(p, p->c.label[i], i);
+        for (int32_t i = c->first[y]; i < c->first[y + 1]; i++) {
+            int32_t label = c->label[i], slot = ++p->tail[label];
+            p->run[slot] = (struct part_run){y, c->span[i][0], c->span[i][1], slot + 1, label, -1};
+            p->area[label] += c->span[i][1] - c->span[i][0];
+            extend_box(p->box[label], y, c->span[i][0], c->span[i][1]);
         }
     }
+    for (int32_t i = 0; i < c->count; i++) p->run[p->tail[i]].next = -1;
 }
 
 jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *out)

@@ -255,9 +255,11 @@ jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const par
 {
     jali_status status;
     int32_t longest = solid->width_px + solid->height_px, rim = FIRST_RIM_PX, k = 0;
-    window w = window_around(solid, p->box[root], rim);
+    window first = window_around(solid, p->box[root], rim), w = first;
     TRY(make_room(ctx, s, &w));
-    draw_part(p, root, &w, s->grown);
+    TRY(GROW(ctx, s->own, s->own_capacity, word_count(&first)));
+    draw_part(p, root, &first, s->own);
+    memcpy(s->grown, s->own, (size_t)word_count(&first) * sizeof *s->grown);
     for (;;) {
         draw_picture(solid, &w, s->picture);
         int32_t limit = MIN(rim, longest), most = limit;
@@ -271,8 +273,7 @@ jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const par
                 most = jump / 2; // a part is met within the jump: halve it
             } else {
                 first_met_pixel(&w, s->picture, s->grown, s->next, bridge->to);
-                draw_part(p, root, &w, s->grown);
-                nearest_own(&w, s->grown, metric, k + 1, bridge->to, bridge->from);
+                nearest_own(&first, s->own, metric, k + 1, bridge->to, bridge->from);
                 return JALI_OK;
             }
         }
@@ -289,6 +290,7 @@ done:
 void search_free(jali_context *ctx, search *s)
 {
     release(ctx, s->picture);
+    release(ctx, s->own);
     release(ctx, s->grown);
     release(ctx, s->next);
     release(ctx, s->spare);

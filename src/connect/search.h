@@ -5,10 +5,10 @@
 #include "connect/parts.h"
 #include <jali/connect.h>
 
-/// Scratch of the search: windows of the picture, the part before and after a step.
+/// Scratch of the search: windows of the picture, of the part, of the part before and after a step.
 typedef struct search {
-    uint64_t *picture, *grown, *next, *spare; // [capacity] words each
-    size_t picture_capacity, grown_capacity, next_capacity, spare_capacity;
+    uint64_t *picture, *own, *grown, *next, *spare; // [capacity] words each
+    size_t picture_capacity, own_capacity, grown_capacity, next_capacity, spare_capacity;
 } search;
 
 /// Find the white pixel outside the part `root` that is nearest to it, and the part's pixel nearest to that.
