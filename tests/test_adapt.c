@@ -76,6 +76,29 @@ TEST(drawn_details_have_the_types_of_the_paper)
     check_types(BOXES({60, 2, 3, 50}), &opt, 0, 1, 0);                     // across words
 }
 
+TEST(a_detail_as_large_as_the_picture_and_small_ones_beside_it)
+{
+    enum { SIDE = 1600 };
+    jali_adapt_options opt = squares(5);
+    jali_bitmap a;
+    jali_details details;
+    CHECK_OK(jali_bitmap_create(ctx, SIDE, SIDE, &a));
+    for (int32_t y = 0; y < SIDE; y++)
+        for (int32_t x = 0; x < SIDE; x++) {
+            int32_t border = MIN(MIN(x, y), MIN(SIDE - 1 - x, SIDE - 1 - y));
+            bool bar = x % 100 >= 50 && x % 100 < 53 && y >= 500 && y < 530;
+            jali_bitmap_set(&a, x, y, (border >= 10 && border < 13) || bar);
+        }
+    CHECK_OK(jali_adapt_details(ctx, &a, true, &opt, &details));
+    CHECK_INT(details.count[JALI_TYPE_A], 1); // the line around has black on both sides
+    CHECK_INT(details.count[JALI_TYPE_B], 16);
+    CHECK_INT(details.count[JALI_TYPE_C], 0);
+    CHECK_INT(count_white(ctx, &details.type[JALI_TYPE_A]), 4 * 3 * (SIDE - 23));
+    CHECK_INT(count_white(ctx, &details.type[JALI_TYPE_B]), 16 * 3 * 30);
+    jali_details_free(ctx, &details);
+    jali_bitmap_free(ctx, &a);
+}
+
 // --- Types on random pictures, by the definition
 
 // Squares of the chessboard distance to what is not set, its local maxima: centres of maximal squares.
@@ -610,6 +633,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(drawn_details_have_the_types_of_the_paper),
+        cmocka_unit_test(a_detail_as_large_as_the_picture_and_small_ones_beside_it),
         cmocka_unit_test(details_conflicts_and_rounds_are_their_definitions),
         cmocka_unit_test(a_print_keeps_to_its_elements_and_never_weighs_more_than_the_opening),
         cmocka_unit_test(widths_beyond_the_window_give_the_opening_and_closing),
