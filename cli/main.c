@@ -19,7 +19,7 @@ static const verb verbs[] = {
      IMAGE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
      GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
-    {"check", "MODEL", "is a model (STL, 3MF) a solid: closed, manifold, outward, nowhere through itself",
+    {"check", "MODEL", "is a model a solid: closed, manifold, outward, nowhere through itself",
      GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
     {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | OUTPUT_AND_RUN, ".png",
      run_sample},

@@ -246,7 +246,7 @@ TEST(models_are_checked)
     run("check open.stl --json open.json", 3, "open.stl is not a solid");
     CHECK(strstr(printed, "3 edges are open") && access("open.json", F_OK) == 0);
     run("check open.stl --json open.json", 2, "--force-overwrite");
-    run("check two.pbm", 4, "neither STL nor 3MF");
+    run("check two.pbm", 4, "is no STL, 3MF, OBJ");
     run("check missing.stl", 1, "No such file");
     run("check solid.stl -o a.png", 2, "not an option of jali check");
 }

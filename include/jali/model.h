@@ -1,4 +1,4 @@
-// Reading a model file into a mesh: STL (binary, ASCII) and 3MF.
+// Reading a model file into a mesh: STL (binary, ASCII), 3MF, OBJ, PLY (binary, ASCII) and OFF.
 #ifndef JALI_MODEL_H
 #define JALI_MODEL_H
 
@@ -18,9 +18,11 @@ JALI_API jali_model_options jali_model_defaults(void);
 /// Read a model. What it is follows from its contents, not from its name.
 ///   in     path   "-" is stdin
 ///          opt    NULL means the defaults
-///   out    mesh   mm, coordinates as float32 holds them, which is what slicers see. An STL has no unit and
-///                 counts as mm, its equal vertices are welded. A 3MF gives all objects of its build, placed;
-///                 its vertices stay as they are numbered. Free with jali_mesh_free
+///   out    mesh   mm, coordinates as float32 holds them, which is what slicers see. Only a 3MF has a unit,
+///   the
+///                 others count as mm. The equal vertices of an STL are welded; those of the others stay as
+///                 they are numbered. A 3MF gives all objects of its build, placed. Polygons are split into
+///                 triangles. Free with jali_mesh_free
 ///   fails  JALI_IO, JALI_BAD_INPUT (what is wrong and where; truncated, empty, not a number, another type),
 ///          JALI_LIMIT, JALI_NO_MEMORY, JALI_CANCELLED
 JALI_API jali_status jali_read_model(jali_context *ctx, const char *path, const jali_model_options *opt,

@@ -24,32 +24,42 @@ static jali_status refuse_type(jali_context *ctx, const model_file *file)
         {"\x89PNG", 4, "a PNG picture"},
         {"\xff\xd8\xff", 3, "a JPEG picture"},
         {"RIFF", 4, "a WebP picture"},
-        {"ply", 3, "a PLY model"},
-        {"OFF", 3, "an OFF model"},
         {"<", 1, "an XML text"},
         {"%PDF", 4, "a PDF"},
     };
-    if (file->size == 0) return fail(ctx, JALI_BAD_INPUT, "%s is empty; a model is STL or 3MF", file->name);
+    if (file->size == 0)
+        return fail(ctx, JALI_BAD_INPUT, "%s is empty; a model is STL, 3MF, OBJ, PLY or OFF", file->name);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (begins_with(file, known[i].magic, known[i].length))
-            return fail(ctx, JALI_BAD_INPUT, "%s is %s; a model is STL or 3MF", file->name, known[i].what);
-    return fail(ctx, JALI_BAD_INPUT, "%s is neither STL nor 3MF", file->name);
+            return fail(ctx, JALI_BAD_INPUT, "%s is %s; a model is STL, 3MF, OBJ, PLY or OFF", file->name,
+                        known[i].what);
+    return fail(ctx, JALI_BAD_INPUT, "%s is no STL, 3MF, OBJ, PLY or OFF", file->name);
+}
+
+jali_status read_any_model(jali_context *ctx, const model_file *file, jali_mesh *mesh, double (**uv)[3][2])
+{
+    *mesh = (jali_mesh){0};
+    if (uv) *uv = NULL;
+    if (file->opt.max_triangles < 1 || file->opt.max_triangles > INT32_MAX / 3)
+        return fail(ctx, JALI_BAD_VALUE, "max_triangles = %d is outside 1 .. %d", file->opt.max_triangles,
+                    INT32_MAX / 3);
+    if (file->size > file->opt.max_bytes)
+        return fail(ctx, JALI_LIMIT, "%s is larger than the limit of %.0f MB", file->name,
+                    (double)file->opt.max_bytes / 1e6);
+    if (looks_like_3mf(file)) return read_3mf(ctx, file, mesh);
+    if (is_binary_stl(file)) return read_stl(ctx, file, mesh);
+    if (looks_like_ply(file)) return read_ply(ctx, file, mesh);
+    if (looks_like_off(file)) return read_off(ctx, file, mesh);
+    if (looks_like_obj(file)) return read_obj(ctx, file, mesh, uv);
+    if (looks_like_stl(file)) return read_stl(ctx, file, mesh);
+    return refuse_type(ctx, file);
 }
 
 jali_status jali_read_model_bytes(jali_context *ctx, const void *data, size_t size, const char *name,
                                   const jali_model_options *opt, jali_mesh *mesh)
 {
-    model_file file = {data, size, name, opt ? *opt : jali_model_defaults()};
-    *mesh = (jali_mesh){0};
-    if (file.opt.max_triangles < 1 || file.opt.max_triangles > INT32_MAX / 3)
-        return fail(ctx, JALI_BAD_VALUE, "max_triangles = %d is outside 1 .. %d", file.opt.max_triangles,
-                    INT32_MAX / 3);
-    if (size > file.opt.max_bytes)
-        return fail(ctx, JALI_LIMIT, "%s is larger than the limit of %.0f MB", name,
-                    (double)file.opt.max_bytes / 1e6);
-    if (looks_like_3mf(&file)) return read_3mf(ctx, &file, mesh);
-    if (looks_like_stl(&file)) return read_stl(ctx, &file, mesh);
-    return refuse_type(ctx, &file);
+    const model_file file = {data, size, name, opt ? *opt : jali_model_defaults()};
+    return read_any_model(ctx, &file, mesh, NULL);
 }
 
 jali_status jali_read_model(jali_context *ctx, const char *path, const jali_model_options *opt,

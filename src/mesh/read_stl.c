@@ -8,8 +8,7 @@
 // Limits:  colours and attribute bytes are ignored, stored normals too: the order of the corners decides.
 // Checked: tests/test_model.c, fuzz/fuzz_stl.c.
 #include "mesh/readers.h"
-
-#include "base/number.h"
+#include "mesh/text.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -26,6 +25,11 @@ static uint32_t little_endian(const char *at)
 static uint64_t announced_bytes(const model_file *file)
 {
     return HEADER_BYTES + (uint64_t)RECORD_BYTES * little_endian(file->data + 80);
+}
+
+bool is_binary_stl(const model_file *file)
+{
+    return file->size >= HEADER_BYTES && announced_bytes(file) == file->size;
 }
 
 // "solid" first and "facet" or "endsolid" soon after, nothing but text up to there.
@@ -55,7 +59,7 @@ bool looks_like_stl(const model_file *file)
 {
     if (is_ascii(file)) return true;
     if (file->size < HEADER_BYTES || memcmp(file->data, "\x89PNG", 4) == 0) return false;
-    return announced_bytes(file) == file->size || !is_text(file);
+    return is_binary_stl(file) || !is_text(file);
 }
 
 // Triangle soup to mesh: the corners are welded, corner i of triangle t being 3 t + i.
@@ -119,37 +123,12 @@ done:
     return status;
 }
 
-typedef struct text {
-    const char *at, *end;
-    int64_t line;
-} text;
-
-static void skip_space(text *in)
-{
-    for (; in->at < in->end && isspace((unsigned char)*in->at); in->at++) in->line += *in->at == '\n';
-}
-
-static void skip_line(text *in)
-{
-    while (in->at < in->end && *in->at != '\n') in->at++;
-}
-
-static bool take_word(text *in, char *word, size_t room)
-{
-    skip_space(in);
-    size_t length = 0;
-    for (; in->at < in->end && !isspace((unsigned char)*in->at); in->at++)
-        if (length + 1 < room) word[length++] = (char)tolower((unsigned char)*in->at);
-    word[length] = 0;
-    return length > 0;
-}
-
 static jali_status take_corner(jali_context *ctx, const model_file *file, text *in, double corner[3])
 {
     for (int k = 0; k < 3; k++) {
         double value;
         skip_space(in);
-        if (!read_decimal(&in->at, in->end, &value) || !isfinite((float)value))
+        if (!take_number(in, &value) || !isfinite((float)value))
             return fail(ctx, JALI_BAD_INPUT, "%s, line %lld: a vertex needs three finite numbers", file->name,
                         (long long)in->line);
         corner[k] = (float)value;
@@ -196,6 +175,6 @@ done:
 
 jali_status read_stl(jali_context *ctx, const model_file *file, jali_mesh *mesh)
 {
-    bool binary = file->size >= HEADER_BYTES && announced_bytes(file) == file->size;
-    return !binary && is_ascii(file) ? read_ascii(ctx, file, mesh) : read_binary(ctx, file, mesh);
+    return !is_binary_stl(file) && is_ascii(file) ? read_ascii(ctx, file, mesh)
+                                                  : read_binary(ctx, file, mesh);
 }
