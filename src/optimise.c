@@ -253,7 +253,8 @@ static jali_status by_the_paper(jali_context *ctx, optimising *o, const jali_bit
     jali_status status;
     jali_bitmap joined = {0};
     jali_connect_options connect = {o->metric};
-    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid};
+    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid,
+                                          NULL}; // one kernel for the whole picture
     TRY(jali_connect(ctx, drawing, &connect, &joined, NULL));
     TRY(jali_compensate(ctx, &joined, &compensate, mask));
     TRY(adapt_in_rounds(ctx, o, mask));
@@ -284,7 +285,8 @@ static jali_status by_design_of_the_print(jali_context *ctx, optimising *o, cons
     jali_bridges bridges = {0};
     jali_stamp_report report;
     jali_connect_options connect = {o->metric};
-    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid};
+    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid,
+                                          o->chart};
     if (o->opt.details) TRY(look_at_drawing(ctx, o, drawing));
     TRY(jali_adapt_print(ctx, drawing, &o->widths, &print, &report));
     TRY(jali_adapt_smooth(ctx, &o->widths, &print));
@@ -315,6 +317,7 @@ static jali_status prepare(jali_context *ctx, optimising *o)
     o->widths.epsilon_px = (int32_t)floor(o->opt.epsilon_mm / jali_chart_pixel_mm(o->chart));
     o->widths.isolated_matters = !o->opt.paper;
     o->widths.outside_solid = o->chart->outside_solid;
+    o->widths.chart = o->opt.paper ? NULL : o->chart;
     o->widths.axis_worth_white *= o->opt.detail;
     o->widths.axis_worth_black *= o->opt.detail;
 done:

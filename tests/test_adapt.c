@@ -5,6 +5,20 @@
 
 #include <jali/connect.h>
 
+// The flat elements of the mask or of the print: e[1] the solid's, e[0] the void's.
+static jali_status flat_elements(const jali_adapt_options *opt, bool in_print, element e[2])
+{
+    jali_bitmap grid = {.width_px = 1, .height_px = 1};
+    widths w;
+    jali_status status =
+        in_print ? printed_widths(ctx, opt, &grid, 0, &w) : mask_widths(ctx, opt, &grid, 0, &w);
+    e[1] = w.solid.whole;
+    e[0] = w.hollow.whole;
+    w.solid.whole = w.hollow.whole = (element){0};
+    widths_free(ctx, &w);
+    return status;
+}
+
 // --- Types on drawn pictures
 
 static jali_adapt_options squares(int32_t size_px)
@@ -156,7 +170,7 @@ static void check_details(const jali_bitmap *a, bool white, const jali_adapt_opt
 {
     element e[2];
     jali_bitmap opened, scratch;
-    CHECK_OK(mask_elements(ctx, opt, &e[1], &e[0]));
+    CHECK_OK(flat_elements(opt, false, e));
     CHECK_OK(jali_bitmap_create(ctx, a->width_px, a->height_px, &opened));
     CHECK_OK(jali_bitmap_create(ctx, a->width_px, a->height_px, &scratch));
     CHECK_OK(white ? open_by(ctx, a, &e[1], opt->outside_solid, &scratch, &opened)
@@ -334,7 +348,7 @@ static int64_t weigh(const jali_bitmap *drawing, const jali_bitmap *print, const
                        : close_by(ctx, drawing, &e[0], true, &scratch, &removed));
         combine(ctx, RULE_XOR, drawing, &removed, &removed);
         combine(ctx, RULE_AND, &axis, &removed, &axis);
-        sum += axis_worth_units(opt, white, &e[1], &e[0]) *
+        sum += axis_worth_units(opt, white, e[1].size, e[0].size) *
                count_combined(ctx, white ? RULE_AND_NOT : RULE_AND, &axis, print);
         jali_bitmap_free(ctx, &axis);
         jali_bitmap_free(ctx, &removed);
@@ -375,7 +389,7 @@ static void check_print(const jali_bitmap *drawing, const jali_adapt_options *op
     element e[2];
     jali_bitmap print;
     jali_stamp_report report;
-    CHECK_OK(printed_elements(ctx, opt, &e[1], &e[0]));
+    CHECK_OK(flat_elements(opt, true, e));
     CHECK_OK(jali_adapt_print(ctx, drawing, opt, &print, &report));
     jali_bitmap wide_drawing = padded(drawing, opt->outside_solid),
                 wide_print = padded(&print, opt->outside_solid);
@@ -422,7 +436,7 @@ TEST(widths_beyond_the_window_give_the_opening_and_closing)
     opt.void_px = 8;
     opt.growth_px = 9;
     CHECK_OK(jali_adapt_print(ctx, &a, &opt, &print, &report));
-    CHECK_OK(printed_elements(ctx, &opt, &e[1], &e[0]));
+    CHECK_OK(flat_elements(&opt, true, e));
     jali_bitmap wide = padded(&a, true), start = opened_and_closed(&wide, e),
                 wide_print = padded(&print, true);
     CHECK(report.tried == 0 && same_bitmap(&start, &wide_print));
@@ -512,9 +526,9 @@ static int32_t weigh_tree(const jali_bitmap *drawing, const jali_bitmap *print, 
     int32_t w = drawing->width_px, root = 0;
     element e[2];
     jali_bitmap axis;
-    CHECK_OK(printed_elements(ctx, opt, &e[1], &e[0]));
+    CHECK_OK(flat_elements(opt, true, e));
     CHECK_OK(medial_axis(ctx, drawing, true, true, e[1].size, &axis));
-    int64_t worth = axis_worth_units(opt, true, &e[1], &e[0]);
+    int64_t worth = axis_worth_units(opt, true, e[1].size, e[0].size);
     memset(value, 0, MOST_PIECES * sizeof *value);
     memset(cost, 0, MOST_PIECES * sizeof *cost);
     for (int32_t i = 0; i < w * drawing->height_px; i++) {

@@ -4,6 +4,7 @@
 
 #include <jali/bitmap.h>
 #include <jali/bridges.h>
+#include <jali/chart.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -12,14 +13,17 @@ extern "C" {
 typedef enum jali_shape { JALI_SHAPE_DISC, JALI_SHAPE_SQUARE } jali_shape;
 
 typedef struct jali_adapt_options {
-    jali_shape shape;      // of the structuring elements; default disc, the paper's is the square
-    int32_t solid_px;      // omega_w: narrowest solid that is left alone, 1 .. 4096
-    int32_t void_px;       // omega_b: narrowest void that is left alone, 1 .. 4096
-    int32_t epsilon_px;    // a detail whose medial axis has more pixels than this is type B, else C
-    bool isolated_matters; // a detail that touches no larger area of its own tone is type B whatever its
-                           // length
-    bool outside_solid;    // what surrounds the picture
-    int32_t growth_px;     // omega_c: what the printer adds to a solid's width, plus 1; odd (default 1)
+    jali_shape shape;        // of the structuring elements; default disc, the paper's is the square
+    int32_t solid_px;        // omega_w: narrowest solid that is left alone, 1 .. 4096
+    int32_t void_px;         // omega_b: narrowest void that is left alone, 1 .. 4096
+    int32_t epsilon_px;      // a detail whose medial axis has more pixels than this is type B, else C
+    bool isolated_matters;   // a detail that touches no larger area of its own tone is type B whatever its
+                             // length
+    bool outside_solid;      // what surrounds the picture
+    const jali_chart *chart; // with a metric: the lengths here are on the surface, in units of the flat
+                             // pixel, and the elements vary over the picture (docs/metric.md); discs only.
+                             // NULL (default): flat
+    int32_t growth_px; // omega_c: what the printer adds to a solid's width, plus 1; odd (default 1)
     // jali_adapt_print alone:
     double axis_worth_white; // what a lost pixel of a detail's axis weighs, as a share of the narrowest
                              // width, 0 to

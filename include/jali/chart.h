@@ -23,8 +23,12 @@ typedef struct jali_chart {
     bool outside_solid;          // what lies beyond the grid: solid (a frame, a surface) or nothing
     int32_t pixel_units;         // even, >= 16
     double unit_mm;              // length of a lattice unit
-    // The metric (g11, g12, g22) at knots every metric_step_px, for curved surfaces; NULL: flat, the
-    // identity.
+    // The metric of a curved surface; NULL: flat, the identity everywhere. Knot (i, j) stands in row j of the
+    // array and holds (g11, g12, g22) at the centre of the square of metric_step_px px whose upper left
+    // corner is pixel (i step, j step), y down; margin included, and beyond the last knot the last one holds.
+    // Between knots it is interpolated. A step of (dx, dy) pixels is sqrt(g11 dx^2 + 2 g12 dx dy + g22 dy^2)
+    // flat pixels (jali_chart_pixel_mm) long on the surface. Between two knots lengths should change by less
+    // than 20 %.
     float (*metric)[3]; // [metric_rows * metric_columns]
     int32_t metric_columns, metric_rows, metric_step_px;
 } jali_chart;

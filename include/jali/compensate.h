@@ -12,6 +12,7 @@ typedef struct jali_compensate_options {
     jali_shape shape; // disc, or the paper's square
     int32_t size_px;  // omega_c, odd: the solid loses (size_px - 1) / 2 at each edge; 1 changes nothing
     bool outside_solid;
+    const jali_chart *chart; // with a metric: size_px is on the surface (discs only); NULL: flat
 } jali_compensate_options;
 
 /// I' = I eroded by S_C.

@@ -7,7 +7,7 @@
 //          chance.
 // Checked: tests/test_adapt.c.
 #include <jali/adapt.h>
-#include "raster/raster.h"
+#include "raster/field.h"
 #include "base/base.h"
 
 // The details that are treated: types A and B.
@@ -19,18 +19,29 @@ static void treated(jali_context *ctx, const jali_details *details, jali_bitmap 
 // hits = the pixels of `details` with a pixel of `others` in a window of `size` px around them, added to
 // conflict.
 static jali_status add_conflicts(jali_context *ctx, const jali_bitmap *details, const jali_bitmap *others,
-                                 int32_t size, jali_shape shape, jali_bitmap *scratch, jali_bitmap *conflict)
+                                 int32_t size, const jali_adapt_options *opt, jali_bitmap *scratch,
+                                 jali_bitmap *conflict)
 {
-    element window;
+    jali_status status;
+    tiling tiles = {0};
+    element square = {0};
+    field window = {0};
     int32_t odd = size | 1; // the window is centred on a pixel
-    jali_status status =
-        shape == JALI_SHAPE_SQUARE ? element_square(ctx, odd, &window) : element_disc(ctx, odd, &window);
-    if (status == JALI_OK) status = dilate(ctx, others, &window, false, scratch);
-    element_free(ctx, &window);
-    if (status != JALI_OK) return status;
+    if (opt->shape == JALI_SHAPE_SQUARE) {
+        TRY(element_square(ctx, odd, &square));
+        TRY(field_of_element(ctx, &square, &window));
+    } else {
+        TRY(tiling_create(ctx, opt->chart, details->width_px, details->height_px, 0, 0, 1, &tiles));
+        TRY(field_of_discs(ctx, &tiles, odd - 1, 0.5, true, &window));
+    }
+    TRY(field_dilate(ctx, others, &window, false, scratch));
     combine(ctx, RULE_AND, details, scratch, scratch);
     combine(ctx, RULE_OR, conflict, scratch, conflict);
-    return JALI_OK;
+done:
+    field_free(ctx, &window);
+    tiling_free(ctx, &tiles);
+    element_free(ctx, &square);
+    return status;
 }
 
 jali_status jali_adapt_conflicts(jali_context *ctx, const jali_details *white, const jali_details *black,
@@ -47,8 +58,8 @@ jali_status jali_adapt_conflicts(jali_context *ctx, const jali_details *white, c
     TRY(jali_bitmap_create(ctx, width, height, &scratch));
     treated(ctx, white, &w);
     treated(ctx, black, &b);
-    TRY(add_conflicts(ctx, &w, &b, opt->solid_px, opt->shape, &scratch, conflict));
-    TRY(add_conflicts(ctx, &b, &w, opt->void_px, opt->shape, &scratch, conflict));
+    TRY(add_conflicts(ctx, &w, &b, opt->solid_px, opt, &scratch, conflict));
+    TRY(add_conflicts(ctx, &b, &w, opt->void_px, opt, &scratch, conflict));
     TRY(label_components(ctx, conflict, true, 8, &c));
     *regions = c.count;
 done:

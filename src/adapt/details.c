@@ -12,6 +12,8 @@
 #include "adapt/widths.h"
 #include "base/base.h"
 
+#include <math.h>
+
 void jali_details_free(jali_context *ctx, jali_details *details)
 {
     for (int32_t type = 0; type < JALI_TYPES; type++) jali_bitmap_free(ctx, &details->type[type]);
@@ -26,7 +28,8 @@ enum { SLOTS = 16, MOST_WINDOW_WORDS = 1 << 16, MOST_RING_RUNS = 1 << 14, BAND_R
 typedef struct detail {
     int32_t first, count;
     int32_t x0, y0, x1, y1;
-    int32_t pixels, axis_px;
+    int32_t pixels;
+    double axis_px; // on the surface
     int32_t type;
     bool touches_own; // a neighbour of its tone is no detail: it hangs on something larger
 } detail;
@@ -45,6 +48,7 @@ typedef struct scratch {
 typedef struct sorting {
     const jali_bitmap *picture;
     bool white, outside_solid, isolated_matters;
+    const tiling *tiles;
     int32_t epsilon_px;
     components c;
     detail *detail;   // [c.count]
@@ -87,20 +91,48 @@ done:
     return status;
 }
 
+// How long a pixel of the axis is on the surface: its length along the direction in which its neighbours lie.
+static double length_of_pixel(const jali_bitmap *axis, const tiling *tiles, int32_t x, int32_t y)
+{
+    const double *g = metric_at(tiles, x, y);
+    double flat = 0, stretched = 0;
+    for (int32_t dy = -1; dy <= 1; dy++)
+        for (int32_t dx = -1; dx <= 1; dx++) {
+            int32_t u = x + dx, v = y + dy;
+            if (u < 0 || v < 0 || u >= axis->width_px || v >= axis->height_px) continue;
+            if ((dx == 0 && dy == 0) || !jali_bitmap_get(axis, u, v)) continue;
+            flat += dx * dx + dy * dy;
+            stretched += g[0] * dx * dx + 2 * g[1] * dx * dy + g[2] * dy * dy;
+        }
+    return flat > 0 ? sqrt(stretched / flat) : sqrt((g[0] + g[2]) / 2);
+}
+
+static double length_of_run(const jali_bitmap *axis, const tiling *tiles, int32_t y, int32_t x0, int32_t x1)
+{
+    if (is_flat(tiles)) return count_run(axis, y, x0, x1);
+    const uint64_t *row = axis->word + (int64_t)y * axis->stride;
+    double length = 0;
+    for (int32_t x = next_white(row, x0, x1, 0); x < x1; x = next_white(row, x + 1, x1, 0))
+        length += length_of_pixel(axis, tiles, x, y);
+    return length;
+}
+
 // The axis has no more pixels than the detail: where no detail has enough, nobody needs an axis.
 static jali_status find_axes(jali_context *ctx, sorting *s, const jali_bitmap *removed, int32_t rounds)
 {
     int32_t largest = 0;
     for (int32_t i = 0; i < s->c.count; i++) largest = MAX(largest, s->detail[i].pixels);
-    return largest > s->epsilon_px ? medial_axis(ctx, removed, true, false, rounds, &s->axis) : JALI_OK;
+    return largest * s->tiles->most_stretch > s->epsilon_px
+               ? medial_axis(ctx, removed, true, false, rounds, &s->axis)
+               : JALI_OK;
 }
 
 static void measure_axis(const sorting *s, detail *d)
 {
-    if (!s->axis.word || d->pixels <= s->epsilon_px) return;
+    if (!s->axis.word || d->pixels * s->tiles->most_stretch <= s->epsilon_px) return;
     for (int32_t k = d->first; k < d->first + d->count; k++) {
         int32_t run = s->order[k];
-        d->axis_px += count_run(&s->axis, s->row_of[run], s->c.span[run][0], s->c.span[run][1]);
+        d->axis_px += length_of_run(&s->axis, s->tiles, s->row_of[run], s->c.span[run][0], s->c.span[run][1]);
     }
 }
 
@@ -328,32 +360,32 @@ jali_status jali_adapt_details(jali_context *ctx, const jali_bitmap *picture, bo
 {
     jali_status status;
     jali_bitmap removed = {0}, opened = {0};
-    element e[2] = {0}; // [white]
+    widths w = {0};
     sorting s = {.picture = picture,
                  .white = white,
                  .outside_solid = opt->outside_solid,
                  .isolated_matters = opt->isolated_matters,
                  .epsilon_px = opt->epsilon_px,
+                 .tiles = &w.tiles,
                  .details = details};
     *details = (jali_details){0};
-    TRY(mask_elements(ctx, opt, &e[1], &e[0]));
+    TRY(mask_widths(ctx, opt, picture, 0, &w));
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &removed));
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &opened));
     for (int32_t type = 0; type < JALI_TYPES; type++)
         TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &details->type[type]));
-    TRY(white ? open_by(ctx, picture, &e[1], opt->outside_solid, &opened, &removed)
-              : close_by(ctx, picture, &e[0], opt->outside_solid, &opened, &removed));
+    TRY(white ? field_open(ctx, picture, &w.solid, opt->outside_solid, &opened, &removed)
+              : field_close(ctx, picture, &w.hollow, opt->outside_solid, &opened, &removed));
     combine(ctx, RULE_XOR, picture, &removed, &removed);
     TRY(label_components(ctx, &removed, true, white ? 4 : 8, &s.c));
     TRY(gather_runs(ctx, &s));
-    TRY(find_axes(ctx, &s, &removed, e[white].size));
+    TRY(find_axes(ctx, &s, &removed, white ? w.solid.most : w.hollow.most));
     TRY(sort_details(ctx, &s));
 done:
     if (status != JALI_OK) jali_details_free(ctx, details);
     jali_bitmap_free(ctx, &removed);
     jali_bitmap_free(ctx, &opened);
-    element_free(ctx, &e[0]);
-    element_free(ctx, &e[1]);
+    widths_free(ctx, &w);
     components_free(ctx, &s.c);
     release(ctx, s.detail);
     release(ctx, s.order);

@@ -9,39 +9,43 @@
 #include "adapt/widths.h"
 #include "base/base.h"
 
-#include <stdlib.h>
-
 enum { NECK_SHARE = 6 };
+
+// Whether the patch, set on (0, 0), covers (dx, dy).
+static bool covers(const patch *p, int32_t dx, int32_t dy)
+{
+    int32_t k = dy - p->top;
+    return k >= 0 && k < p->rows && dx >= p->span[k][0] && dx <= p->span[k][1];
+}
 
 // Where to set the element so that it covers (x, y): the fewest black pixels made white, less the thin ones
 // covered.
-static void cheapest_cover(const jali_bitmap *mask, const jali_bitmap *thin, const element *e, int32_t x,
+static void cheapest_cover(const jali_bitmap *mask, const jali_bitmap *thin, const field *e, int32_t x,
                            int32_t y, int32_t at[2])
 {
-    int32_t best = INT32_MAX, even = e->size % 2 == 0;
-    for (int32_t row = 0; row < e->size; row++) {
-        int32_t dy = row - e->size / 2, half = e->half[abs(2 * dy + even) / 2];
-        for (int32_t dx = -half; dx <= half - even; dx++) {
+    int32_t best = INT32_MAX;
+    for (int32_t dy = -e->above; dy <= e->below; dy++)
+        for (int32_t dx = -e->left; dx <= e->right; dx++) {
+            const patch *p = patch_at(e, x - dx, y - dy);
+            if (!covers(p, dx, dy)) continue;
             int32_t cost =
-                count_element(mask, x - dx, y - dy, e, false) - count_element(thin, x - dx, y - dy, e, true);
+                count_patch(mask, x - dx, y - dy, p, false) - count_patch(thin, x - dx, y - dy, p, true);
             if (cost >= best) continue;
             best = cost;
             at[0] = x - dx;
             at[1] = y - dy;
         }
-    }
 }
 
 // A plate without a frame ends at the bitmap's border, and so must the element.
-static void move_inside(const jali_bitmap *mask, const element *e, int32_t at[2])
+static void move_inside(const jali_bitmap *mask, const field *e, int32_t at[2])
 {
-    int32_t before = e->size / 2, after = e->size - before;
-    at[0] = MAX(MIN(at[0], mask->width_px - after), MIN(before, mask->width_px / 2));
-    at[1] = MAX(MIN(at[1], mask->height_px - after), MIN(before, mask->height_px / 2));
+    at[0] = MAX(MIN(at[0], mask->width_px - e->right - 1), MIN(e->left, mask->width_px / 2));
+    at[1] = MAX(MIN(at[1], mask->height_px - e->below - 1), MIN(e->above, mask->height_px / 2));
 }
 
 // Cover the details of types A and B: an element at each. What it leaves of a long one comes next round.
-static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *opt, const element *e,
+static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *opt, const field *e,
                                    jali_bitmap *mask)
 {
     jali_details thin = {0};
@@ -57,7 +61,7 @@ static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *
                 int32_t at[2] = {0};
                 cheapest_cover(mask, &thin.type[type], e, c.span[i][0], y, at);
                 if (!opt->outside_solid) move_inside(mask, e, at);
-                paint_element(mask, at[0], at[1], e, true);
+                paint_patch(mask, at[0], at[1], patch_at(e, at[0], at[1]), true);
             }
         components_free(ctx, &c);
     }
@@ -69,20 +73,20 @@ done:
 
 // Cores up to `gap` px apart count as one: the neck between two discs of 12 px whose centres are 3 px apart
 // is still 11.6 px wide. (At 5 px, 10.9 wide, one of 24 real pictures came apart in the prediction.)
-static jali_status merge_near(jali_context *ctx, int32_t gap, jali_bitmap *cores)
+static jali_status merge_near(jali_context *ctx, const tiling *tiles, int32_t gap, jali_bitmap *cores)
 {
-    element disc = {0};
+    field disc = {0};
     jali_bitmap merged = {0};
     jali_status status;
     if (gap < 2) return JALI_OK;
-    TRY(element_disc(ctx, gap | 1, &disc));
+    TRY(field_of_discs(ctx, tiles, (gap | 1) - 1, 0.5, true, &disc));
     TRY(jali_bitmap_create(ctx, cores->width_px, cores->height_px, &merged));
-    TRY(dilate(ctx, cores, &disc, false, &merged));
+    TRY(field_dilate(ctx, cores, &disc, false, &merged));
     jali_bitmap swap = *cores;
     *cores = merged;
     merged = swap;
 done:
-    element_free(ctx, &disc);
+    field_free(ctx, &disc);
     jali_bitmap_free(ctx, &merged);
     return status;
 }
@@ -91,18 +95,17 @@ jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_options *opt, b
                              jali_bitmap *mask, jali_bitmap *cores)
 {
     jali_status status;
-    element solid = {0}, hollow = {0};
+    widths w = {0};
     *cores = (jali_bitmap){0};
-    TRY(mask_elements(ctx, opt, &solid, &hollow));
+    TRY(mask_widths(ctx, opt, mask, 0, &w));
     TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, cores));
-    if (thicken) TRY(thicken_details(ctx, opt, &solid, mask));
-    TRY(erode(ctx, mask, &solid, opt->outside_solid, cores));
-    if (!thicken) TRY(dilate(ctx, cores, &solid, false, mask));
-    TRY(merge_near(ctx, opt->solid_px / NECK_SHARE, cores));
+    if (thicken) TRY(thicken_details(ctx, opt, &w.solid, mask));
+    TRY(field_erode(ctx, mask, &w.solid, opt->outside_solid, cores));
+    if (!thicken) TRY(field_dilate(ctx, cores, &w.solid, false, mask));
+    TRY(merge_near(ctx, &w.tiles, opt->solid_px / NECK_SHARE, cores));
 done:
     if (status != JALI_OK) jali_bitmap_free(ctx, cores);
-    element_free(ctx, &solid);
-    element_free(ctx, &hollow);
+    widths_free(ctx, &w);
     return status;
 }
 
@@ -110,16 +113,15 @@ jali_status jali_adapt_lay(jali_context *ctx, const jali_bridges *bridges, const
                            jali_bitmap *mask)
 {
     jali_status status;
-    element solid = {0}, hollow = {0};
+    widths w = {0};
     jali_bitmap scratch = {0};
-    TRY(mask_elements(ctx, opt, &solid, &hollow));
+    TRY(mask_widths(ctx, opt, mask, 0, &w));
     TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, &scratch));
     for (int32_t i = 0; i < bridges->count; i++)
-        paint_stroke(mask, bridges->bridge[i].from, bridges->bridge[i].to, &solid, true);
-    TRY(close_by(ctx, mask, &hollow, opt->outside_solid, &scratch, mask));
+        paint_stroke(mask, bridges->bridge[i].from, bridges->bridge[i].to, &w.solid, true);
+    TRY(field_close(ctx, mask, &w.hollow, opt->outside_solid, &scratch, mask));
 done:
     jali_bitmap_free(ctx, &scratch);
-    element_free(ctx, &solid);
-    element_free(ctx, &hollow);
+    widths_free(ctx, &w);
     return status;
 }

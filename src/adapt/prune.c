@@ -49,11 +49,14 @@ done:
 }
 
 // Wrong pixels and axes that a piece saves.
-static void weigh_pieces(const jali_bitmap *drawing, const jali_bitmap *axis, int64_t worth, piece_tree *t)
+static void weigh_pieces(const jali_bitmap *drawing, const jali_bitmap *axis, const jali_adapt_options *opt,
+                         const widths *w, piece_tree *t)
 {
     for (int32_t y = 0; y < t->c.height_px; y++)
         for (int32_t i = t->c.first[y]; i < t->c.first[y + 1]; i++) {
             int32_t x0 = t->c.span[i][0], x1 = t->c.span[i][1];
+            int64_t worth = axis_worth_units(opt, true, patch_at(&w->solid, x0, y)->size,
+                                             patch_at(&w->hollow, x0, y)->size);
             int64_t saved = WRONG_UNITS * (2 * count_run(drawing, y, x0, x1) - (x1 - x0)) +
                             worth * count_run(axis, y, x0, x1);
             t->value[t->c.label[i]] += PRIZE * saved;
@@ -63,13 +66,15 @@ static void weigh_pieces(const jali_bitmap *drawing, const jali_bitmap *axis, in
 // Wrong pixels that a bridge makes: its width for each pixel of its way that should be black, less those it
 // rights.
 static void weigh_bridges(const jali_bitmap *drawing, const jali_bitmap *print, const jali_bridges *bridges,
-                          int32_t width_px, piece_tree *t)
+                          const field *solid, piece_tree *t)
 {
     for (int32_t i = 0; i < bridges->count; i++) {
         line_walk walk = walk_line(bridges->bridge[i].from, bridges->bridge[i].to);
-        while (walk_on(&walk))
-            if (!jali_bitmap_get(print, walk.x, walk.y))
-                t->cost[i] += WRONG_UNITS * (jali_bitmap_get(drawing, walk.x, walk.y) ? -width_px : width_px);
+        while (walk_on(&walk)) {
+            if (jali_bitmap_get(print, walk.x, walk.y)) continue;
+            int32_t width_px = patch_at(solid, walk.x, walk.y)->size;
+            t->cost[i] += WRONG_UNITS * (jali_bitmap_get(drawing, walk.x, walk.y) ? -width_px : width_px);
+        }
         t->cost[i] = MAX(t->cost[i], 0);
     }
 }
@@ -116,16 +121,16 @@ jali_status jali_adapt_prune(jali_context *ctx, const jali_bitmap *drawing, cons
     jali_status status;
     piece_tree t = {0};
     jali_bitmap axis = {0};
-    element solid = {0}, hollow = {0};
+    widths w = {0};
     int64_t *area = NULL;
     *dropped = 0;
     if (bridges->count == 0) return JALI_OK;
-    TRY(printed_elements(ctx, opt, &solid, &hollow));
-    TRY(medial_axis(ctx, drawing, true, true, solid.size / 2 + 1, &axis));
+    TRY(printed_widths(ctx, opt, print, 0, &w));
+    TRY(medial_axis(ctx, drawing, true, true, w.solid.most / 2 + 1, &axis));
     TRY(build_tree(ctx, print, bridges, &t));
     TRY(component_areas(ctx, &t.c, &area));
-    weigh_pieces(drawing, &axis, axis_worth_units(opt, true, &solid, &hollow), &t);
-    weigh_bridges(drawing, print, bridges, solid.size, &t);
+    weigh_pieces(drawing, &axis, opt, &w, &t);
+    weigh_bridges(drawing, print, bridges, &w.solid, &t);
     prune_tree(bridges, largest_piece(&t.c, area), &t);
     for (int32_t i = 0; i < t.c.count; i++) *dropped += !t.kept[i];
     for (int32_t y = 0; y < t.c.height_px; y++)
@@ -142,7 +147,6 @@ done:
     release(ctx, t.kept);
     release(ctx, area);
     jali_bitmap_free(ctx, &axis);
-    element_free(ctx, &solid);
-    element_free(ctx, &hollow);
+    widths_free(ctx, &w);
     return status;
 }

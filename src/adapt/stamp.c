@@ -40,7 +40,7 @@ typedef struct tone {
     jali_bitmap axis; // of the details of this tone
     jali_bitmap open; // places of the axis that are still worth a try
     jali_bitmap fits; // centres at which the disc fits into the print's pixels of this tone
-    element disc;
+    const field *disc;
     window_element fit;
     uint64_t row[WINDOW_MAX_ELEMENT]; // the disc, row by row, from its left edge
     int32_t area;
@@ -57,6 +57,7 @@ typedef struct stamping {
     int32_t rows;      // of a window that decides what a disc changes
     int32_t pass, turn, band_count;
     jali_stamp_report *band; // [band_count]
+    widths w;
 } stamping;
 
 VECTORISED static int64_t count_window(const window *a, const window *b, int32_t rows)
@@ -290,7 +291,7 @@ static jali_status open_wrong_places(jali_context *ctx, stamping *s, jali_bitmap
             combine(ctx, RULE_AND_NOT, &s->drawing, &s->print, scratch);
         else
             combine(ctx, RULE_AND_NOT, &s->print, &s->drawing, scratch);
-        TRY(medial_axis(ctx, scratch, true, false, t->disc.size, &t->open));
+        TRY(medial_axis(ctx, scratch, true, false, t->disc->most, &t->open));
         clear_pad(&t->open);
         thin_out(&t->open);
     }
@@ -313,10 +314,11 @@ done:
 // The disc's rows as bits from its left edge on, and its area.
 static void draw_disc(tone *t)
 {
-    t->fit = window_element_of(&t->disc);
-    jali_bitmap view = {64, t->disc.size, 1, t->row};
-    paint_element(&view, t->disc.size / 2, t->disc.size / 2, &t->disc, true);
-    for (int32_t k = 0; k < t->disc.size; k++) t->area += __builtin_popcountll(t->row[k]);
+    const element *disc = &t->disc->whole;
+    t->fit = window_element_of(disc);
+    jali_bitmap view = {64, disc->size, 1, t->row};
+    paint_patch(&view, disc->size / 2, disc->size / 2, t->disc->patch, true);
+    for (int32_t k = 0; k < disc->size; k++) t->area += __builtin_popcountll(t->row[k]);
 }
 
 // The axis of the details: of the drawing's axis, what the opening removes.
@@ -324,11 +326,12 @@ static jali_status prepare_tone(jali_context *ctx, stamping *s, bool white, jali
 {
     jali_status status;
     tone *t = &s->side[white];
-    if (t->disc.size <= WINDOW_MAX_ELEMENT) draw_disc(t); // wider ones are not searched with
-    TRY(medial_axis(ctx, &s->drawing, white, true, t->disc.size / 2 + 1, &t->axis));
+    if (t->disc->most <= WINDOW_MAX_ELEMENT && !t->disc->which)
+        draw_disc(t); // wider ones are not searched with
+    TRY(medial_axis(ctx, &s->drawing, white, true, t->disc->most / 2 + 1, &t->axis));
     TRY(jali_bitmap_create(ctx, s->drawing.width_px, s->drawing.height_px, &t->open));
-    TRY(white ? open_by(ctx, &s->drawing, &t->disc, true, scratch, &t->open)
-              : close_by(ctx, &s->drawing, &t->disc, true, scratch, &t->open));
+    TRY(white ? field_open(ctx, &s->drawing, t->disc, true, scratch, &t->open)
+              : field_close(ctx, &s->drawing, t->disc, true, scratch, &t->open));
     combine(ctx, RULE_XOR, &t->open, &s->drawing, &t->open);
     combine(ctx, RULE_AND, &t->axis, &t->open, &t->axis);
     clear_pad(&t->axis);
@@ -400,7 +403,7 @@ static jali_status find_fits(jali_context *ctx, stamping *s, jali_bitmap *scratc
             combine(ctx, RULE_AND, &s->print, &s->print, scratch);
         else
             invert(ctx, &s->print, scratch);
-        TRY(erode(ctx, scratch, &t->disc, white, &t->fits));
+        TRY(field_erode(ctx, scratch, t->disc, white, &t->fits));
     }
 done:
     return status;
@@ -418,20 +421,21 @@ jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, cons
           opt->axis_worth_black <= 100))
         return fail(ctx, JALI_BAD_VALUE, "axis_worth is %g for white, %g for black; 0 to 100 is accepted",
                     opt->axis_worth_white, opt->axis_worth_black);
-    TRY(printed_elements(ctx, opt, &s.side[1].disc, &s.side[0].disc));
     TRY(pad(ctx, drawing, opt->outside_solid, &s.drawing));
+    TRY(printed_widths(ctx, opt, &s.drawing, PAD_PX, &s.w));
+    s.side[1].disc = &s.w.solid;
+    s.side[0].disc = &s.w.hollow;
     TRY(pad(ctx, drawing, opt->outside_solid, &scratch));
     TRY(prepare_tone(ctx, &s, true, &scratch));
     TRY(prepare_tone(ctx, &s, false, &scratch));
-    int32_t solid = s.side[1].disc.size, hollow = s.side[0].disc.size;
     for (int32_t white = 0; white < 2; white++)
-        s.side[white].worth = axis_worth_units(opt, white, &s.side[1].disc, &s.side[0].disc);
-    int32_t reach = plan_windows(&s, solid, hollow);
+        s.side[white].worth = axis_worth_units(opt, white, s.w.solid.most, s.w.hollow.most);
+    int32_t reach = is_flat(&s.w.tiles) ? plan_windows(&s, s.w.solid.most, s.w.hollow.most) : INT32_MAX;
     s.band_count = (drawing->height_px + BAND_ROWS - 1) / BAND_ROWS;
     TRY(ALLOCATE_CLEARED(ctx, s.band, s.band_count));
     TRY(jali_bitmap_copy(ctx, &s.drawing, &s.print));
-    TRY(open_by(ctx, &s.print, &s.side[1].disc, true, &scratch, &s.print));
-    TRY(close_by(ctx, &s.print, &s.side[0].disc, true, &scratch, &s.print));
+    TRY(field_open(ctx, &s.print, &s.w.solid, true, &scratch, &s.print));
+    TRY(field_close(ctx, &s.print, &s.w.hollow, true, &scratch, &s.print));
     if (reach <= MAX_REACH_PX) {
         TRY(find_fits(ctx, &s, &scratch));
         TRY(search(ctx, &s, &scratch, report));
@@ -447,8 +451,8 @@ done:
         jali_bitmap_free(ctx, &s.side[i].axis);
         jali_bitmap_free(ctx, &s.side[i].open);
         jali_bitmap_free(ctx, &s.side[i].fits);
-        element_free(ctx, &s.side[i].disc);
     }
+    widths_free(ctx, &s.w);
     release(ctx, s.band);
     return status;
 }

@@ -39,55 +39,163 @@ static int32_t printed_void_px(const jali_adapt_options *opt)
     return MAX(opt->void_px - (opt->growth_px - 1), 1);
 }
 
-jali_status mask_elements(jali_context *ctx, const jali_adapt_options *opt, element *solid, element *hollow)
+static jali_status flat_mask(jali_context *ctx, const jali_adapt_options *opt, widths *w)
 {
     jali_status status;
-    element growth = {0}, printed = {0};
-    *solid = *hollow = (element){0};
-    TRY(check_widths(ctx, opt));
+    element growth = {0}, printed = {0}, solid = {0}, hollow = {0};
     if (opt->shape == JALI_SHAPE_SQUARE) {
-        TRY(element_square(ctx, opt->solid_px, solid));
-        TRY(element_square(ctx, opt->void_px, hollow));
+        TRY(element_square(ctx, opt->solid_px, &solid));
+        TRY(element_square(ctx, opt->void_px, &hollow));
     } else {
-        TRY(element_wide_disc(ctx, opt->solid_px, solid));
+        TRY(element_wide_disc(ctx, opt->solid_px, &solid));
         TRY(element_disc(ctx, opt->growth_px, &growth));
         TRY(element_disc(ctx, printed_void_px(opt), &printed));
-        TRY(element_sum(ctx, &printed, &growth, hollow));
+        TRY(element_sum(ctx, &printed, &growth, &hollow));
     }
+    TRY(field_of_element(ctx, &solid, &w->solid));
+    TRY(field_of_element(ctx, &hollow, &w->hollow));
 done:
     element_free(ctx, &growth);
     element_free(ctx, &printed);
-    if (status != JALI_OK) {
-        element_free(ctx, solid);
-        element_free(ctx, hollow);
-    }
+    element_free(ctx, &solid);
+    element_free(ctx, &hollow);
     return status;
 }
 
-jali_status printed_elements(jali_context *ctx, const jali_adapt_options *opt, element *solid,
-                             element *hollow)
+static jali_status flat_print(jali_context *ctx, const jali_adapt_options *opt, widths *w)
 {
     jali_status status;
-    element growth = {0}, mask = {0};
-    *solid = *hollow = (element){0};
-    TRY(check_widths(ctx, opt));
+    element growth = {0}, mask = {0}, solid = {0}, hollow = {0};
     TRY(element_wide_disc(ctx, opt->solid_px, &mask));
     TRY(element_disc(ctx, opt->growth_px, &growth));
-    TRY(element_sum(ctx, &mask, &growth, solid));
-    TRY(element_disc(ctx, printed_void_px(opt), hollow));
+    TRY(element_sum(ctx, &mask, &growth, &solid));
+    TRY(element_disc(ctx, printed_void_px(opt), &hollow));
+    TRY(field_of_element(ctx, &solid, &w->solid));
+    TRY(field_of_element(ctx, &hollow, &w->hollow));
 done:
     element_free(ctx, &growth);
     element_free(ctx, &mask);
-    if (status != JALI_OK) {
-        element_free(ctx, solid);
-        element_free(ctx, hollow);
-    }
+    element_free(ctx, &solid);
+    element_free(ctx, &hollow);
     return status;
 }
 
-int64_t axis_worth_units(const jali_adapt_options *opt, bool white, const element *solid,
-                         const element *hollow)
+// --- On a curved surface: the same sums of ellipses, kind by kind
+
+typedef struct kind_patches {
+    patch growth, solid[2], hollow[2]; // [in the print]
+} kind_patches;
+
+static void kind_patches_free(jali_context *ctx, kind_patches *k)
+{
+    patch_free(ctx, &k->growth);
+    for (int32_t i = 0; i < 2; i++) {
+        patch_free(ctx, &k->solid[i]);
+        patch_free(ctx, &k->hollow[i]);
+    }
+}
+
+// The print's void is widened until the mask's, rounded as both are, is nowhere narrower than asked for.
+static jali_status fit_voids(jali_context *ctx, const jali_adapt_options *opt, const double metric[3],
+                             double safety, kind_patches *k)
+{
+    enum { MOST_TRIES = 200 };
+    const double widening = 1.02;
+    jali_status status = JALI_OK;
+    ellipse wanted = ellipse_of_disc(metric, opt->void_px * safety, 0);
+    double diameter_px = printed_void_px(opt) * safety;
+    for (int32_t i = 0; i < MOST_TRIES; i++, diameter_px *= widening) {
+        ellipse printed = ellipse_of_disc(metric, diameter_px, 0);
+        patch_free(ctx, &k->hollow[0]);
+        patch_free(ctx, &k->hollow[1]);
+        TRY(patch_within(ctx, &printed, false, &k->hollow[1]));
+        TRY(patch_sum(ctx, &k->hollow[1], &k->growth, &k->hollow[0]));
+        if (patch_as_wide(&k->hollow[0], &wanted)) break;
+    }
+done:
+    return status;
+}
+
+static jali_status patches_of_kind(jali_context *ctx, const jali_adapt_options *opt, const double metric[3],
+                                   double slack, kind_patches *k)
+{
+    jali_status status;
+    double safety = exp(slack);
+    ellipse grown = ellipse_of_disc(metric, opt->growth_px - 1, 0.5);
+    ellipse solid = ellipse_of_disc(metric, opt->solid_px * safety, 0);
+    TRY(patch_within(ctx, &grown, true, &k->growth));
+    TRY(patch_around(ctx, &solid, &k->solid[0]));
+    TRY(patch_sum(ctx, &k->solid[0], &k->growth, &k->solid[1]));
+    TRY(fit_voids(ctx, opt, metric, safety, k));
+done:
+    return status;
+}
+
+static jali_status curved(jali_context *ctx, const jali_adapt_options *opt, bool in_print, widths *w)
+{
+    jali_status status;
+    const tiling *t = &w->tiles;
+    patch *solid = NULL, *hollow = NULL;
+    TRY(ALLOCATE_CLEARED(ctx, solid, t->kinds));
+    TRY(ALLOCATE_CLEARED(ctx, hollow, t->kinds));
+    for (int32_t kind = 0; kind < t->kinds; kind++) {
+        kind_patches k = {0};
+        status = patches_of_kind(ctx, opt, t->metric[kind], t->slack[kind], &k);
+        if (status == JALI_OK) {
+            solid[kind] = k.solid[in_print];
+            hollow[kind] = k.hollow[in_print];
+            k.solid[in_print] = k.hollow[in_print] = (patch){0};
+        }
+        kind_patches_free(ctx, &k);
+        if (status != JALI_OK) goto done;
+    }
+    TRY(field_of_patches(ctx, t, solid, &w->solid));
+    TRY(field_of_patches(ctx, t, hollow, &w->hollow));
+done:
+    for (int32_t kind = 0; solid && kind < t->kinds; kind++) patch_free(ctx, &solid[kind]);
+    for (int32_t kind = 0; hollow && kind < t->kinds; kind++) patch_free(ctx, &hollow[kind]);
+    release(ctx, solid);
+    release(ctx, hollow);
+    return status;
+}
+
+static jali_status make_widths(jali_context *ctx, const jali_adapt_options *opt, const jali_bitmap *grid,
+                               int32_t pad_px, bool in_print, widths *w)
+{
+    jali_status status;
+    *w = (widths){0};
+    TRY(check_widths(ctx, opt));
+    TRY(tiling_create(ctx, opt->chart, grid->width_px, grid->height_px, pad_px, pad_px, 1, &w->tiles));
+    if (!is_flat(&w->tiles))
+        TRY(curved(ctx, opt, in_print, w));
+    else
+        TRY(in_print ? flat_print(ctx, opt, w) : flat_mask(ctx, opt, w));
+done:
+    if (status != JALI_OK) widths_free(ctx, w);
+    return status;
+}
+
+jali_status mask_widths(jali_context *ctx, const jali_adapt_options *opt, const jali_bitmap *grid,
+                        int32_t pad_px, widths *w)
+{
+    return make_widths(ctx, opt, grid, pad_px, false, w);
+}
+
+jali_status printed_widths(jali_context *ctx, const jali_adapt_options *opt, const jali_bitmap *grid,
+                           int32_t pad_px, widths *w)
+{
+    return make_widths(ctx, opt, grid, pad_px, true, w);
+}
+
+void widths_free(jali_context *ctx, widths *w)
+{
+    field_free(ctx, &w->solid);
+    field_free(ctx, &w->hollow);
+    tiling_free(ctx, &w->tiles);
+}
+
+int64_t axis_worth_units(const jali_adapt_options *opt, bool white, int32_t solid_px, int32_t void_px)
 {
     double worth = white ? opt->axis_worth_white : opt->axis_worth_black;
-    return (int64_t)floor(WRONG_UNITS * worth * MIN(solid->size, hollow->size) + 0.5);
+    return (int64_t)floor(WRONG_UNITS * worth * MIN(solid_px, void_px) + 0.5);
 }

@@ -2,24 +2,33 @@
 //
 // Source:  Binary Image Carving for 3D Printing, section 4.2, Eq. 1.
 #include <jali/compensate.h>
-#include "raster/raster.h"
+#include "raster/field.h"
 #include "base/base.h"
 
 jali_status jali_compensate(jali_context *ctx, const jali_bitmap *picture, const jali_compensate_options *opt,
                             jali_bitmap *thinned)
 {
     jali_status status;
-    element e = {0};
+    tiling tiles = {0};
+    element square = {0};
+    field e = {0};
     *thinned = (jali_bitmap){0};
     if (opt->size_px < 1 || opt->size_px % 2 == 0)
         return fail(ctx, JALI_BAD_VALUE, "omega_c is %d px; an odd number from 1 on is accepted",
                     opt->size_px);
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, thinned));
-    TRY(opt->shape == JALI_SHAPE_SQUARE ? element_square(ctx, opt->size_px, &e)
-                                        : element_disc(ctx, opt->size_px, &e));
-    TRY(erode(ctx, picture, &e, opt->outside_solid, thinned));
+    if (opt->shape == JALI_SHAPE_SQUARE) {
+        TRY(element_square(ctx, opt->size_px, &square));
+        TRY(field_of_element(ctx, &square, &e));
+    } else {
+        TRY(tiling_create(ctx, opt->chart, picture->width_px, picture->height_px, 0, 0, 1, &tiles));
+        TRY(field_of_discs(ctx, &tiles, opt->size_px - 1, 0.5, true, &e)); // half a pixel is the pixel's own
+    }
+    TRY(field_erode(ctx, picture, &e, opt->outside_solid, thinned));
 done:
-    element_free(ctx, &e);
+    field_free(ctx, &e);
+    tiling_free(ctx, &tiles);
+    element_free(ctx, &square);
     if (status != JALI_OK) jali_bitmap_free(ctx, thinned);
     return status;
 }

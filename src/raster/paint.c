@@ -1,4 +1,4 @@
-// Painting runs, elements and strokes.
+// Painting and counting runs; straight walks.
 #include "raster/raster.h"
 #include "base/base.h"
 
@@ -37,40 +37,6 @@ uint64_t window_word(const jali_bitmap *a, int32_t x, int32_t y, bool outside)
     return a->width_px - x >= 64 ? word : word | (beyond & ~UINT64_C(0) << (a->width_px - x));
 }
 
-// The columns x0 .. x1-1 of row k of the element centred at (x, y); an empty range where it is cut off.
-static void element_row(const jali_bitmap *a, int32_t x, int32_t y, const element *e, int32_t k,
-                        int32_t span[3])
-{
-    int32_t even = e->size % 2 == 0, dy = k - e->size / 2;
-    int32_t half = e->half[abs(2 * dy + even) / 2];
-    bool inside = y + dy >= 0 && y + dy < a->height_px;
-    span[0] = y + dy;
-    span[1] = MAX(x - half, 0);
-    span[2] = inside ? MIN(x + half + 1 - even, a->width_px) : span[1];
-}
-
-void paint_element(jali_bitmap *dst, int32_t x, int32_t y, const element *brush, bool white)
-{
-    for (int32_t k = 0; k < brush->size; k++) {
-        int32_t span[3];
-        element_row(dst, x, y, brush, k, span);
-        if (span[1] < span[2]) paint_run(dst, span[0], span[1], span[2], white);
-    }
-}
-
-int32_t count_element(const jali_bitmap *a, int32_t x, int32_t y, const element *e, bool white)
-{
-    int32_t count = 0;
-    for (int32_t k = 0; k < e->size; k++) {
-        int32_t span[3];
-        element_row(a, x, y, e, k, span);
-        if (span[1] >= span[2]) continue;
-        int32_t found = count_run(a, span[0], span[1], span[2]);
-        count += white ? found : span[2] - span[1] - found;
-    }
-    return count;
-}
-
 line_walk walk_line(const int32_t from[2], const int32_t to[2])
 {
     return (line_walk){.x = from[0],
@@ -95,12 +61,4 @@ bool walk_on(line_walk *w)
         w->gone_y++;
     }
     return true;
-}
-
-void paint_stroke(jali_bitmap *dst, const int32_t from[2], const int32_t to[2], const element *brush,
-                  bool white)
-{
-    line_walk walk = walk_line(from, to);
-    do paint_element(dst, walk.x, walk.y, brush, white);
-    while (walk_on(&walk));
 }

@@ -130,10 +130,6 @@ void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white);
 int32_t count_run(const jali_bitmap *a, int32_t y, int32_t x0, int32_t x1);
 /// The 64 pixels of row y from column x (a multiple of 64, may be negative) on; `outside` beyond the bitmap.
 uint64_t window_word(const jali_bitmap *a, int32_t x, int32_t y, bool outside);
-/// Paint the element centred at (x, y), cut off at the bitmap's border.
-void paint_element(jali_bitmap *dst, int32_t x, int32_t y, const element *brush, bool white);
-/// How many pixels of a tone lie under the element centred at (x, y); none beyond the bitmap's border.
-int32_t count_element(const jali_bitmap *a, int32_t x, int32_t y, const element *e, bool white);
 /// A walk from one pixel to another along the 4-connected path nearest to the straight line.
 typedef struct line_walk {
     int32_t x, y; // where it is
@@ -143,8 +139,5 @@ typedef struct line_walk {
 line_walk walk_line(const int32_t from[2], const int32_t to[2]);
 /// One step on; false at the end.
 bool walk_on(line_walk *w);
-/// Paint the element at each pixel of that walk.
-void paint_stroke(jali_bitmap *dst, const int32_t from[2], const int32_t to[2], const element *brush,
-                  bool white);
 
 #endif
