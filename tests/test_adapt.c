@@ -113,6 +113,38 @@ TEST(a_detail_as_large_as_the_picture_and_small_ones_beside_it)
     jali_bitmap_free(ctx, &a);
 }
 
+// At the border of a plate without a frame the cheapest place for the mending element is half beyond the
+// plate, where it would mend nothing.
+TEST(a_thin_line_along_a_bare_border_is_mended_on_the_plate)
+{
+    enum { SIDE = 60 };
+    for (int32_t side = 0; side < 4; side++)
+        for (int32_t size = 8; size <= 9; size++) {
+            jali_adapt_options opt = jali_adapt_defaults();
+            opt.solid_px = opt.void_px = size;
+            opt.epsilon_px = 10;
+            opt.outside_solid = false;
+            jali_bitmap mask, cores;
+            CHECK_OK(jali_bitmap_create(ctx, SIDE, SIDE, &mask));
+            for (int32_t k = 0; k < 3 * 30; k++) {
+                int32_t along = 15 + k / 3, across = side % 2 ? SIDE - 1 - k % 3 : k % 3;
+                jali_bitmap_set(&mask, side < 2 ? across : along, side < 2 ? along : across, true);
+            }
+            bool mended = false;
+            for (int32_t round = 0; round < 8 && !mended; round++) {
+                jali_details left;
+                CHECK_OK(jali_adapt_cores(ctx, &opt, true, &mask, &cores));
+                CHECK(any_white(ctx, &cores)); // the element lies on the plate, whole
+                CHECK_OK(jali_adapt_details(ctx, &mask, true, &opt, &left));
+                mended = left.count[JALI_TYPE_A] + left.count[JALI_TYPE_B] == 0;
+                jali_details_free(ctx, &left);
+                jali_bitmap_free(ctx, &cores);
+            }
+            CHECK(mended);
+            jali_bitmap_free(ctx, &mask);
+        }
+}
+
 // --- Types on random pictures, by the definition
 
 // Squares of the chessboard distance to what is not set, its local maxima: centres of maximal squares.
@@ -648,6 +680,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(drawn_details_have_the_types_of_the_paper),
         cmocka_unit_test(a_detail_as_large_as_the_picture_and_small_ones_beside_it),
+        cmocka_unit_test(a_thin_line_along_a_bare_border_is_mended_on_the_plate),
         cmocka_unit_test(details_conflicts_and_rounds_are_their_definitions),
         cmocka_unit_test(a_print_keeps_to_its_elements_and_never_weighs_more_than_the_opening),
         cmocka_unit_test(widths_beyond_the_window_give_the_opening_and_closing),

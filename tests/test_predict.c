@@ -93,6 +93,36 @@ TEST(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair)
     jali_bitmap_free(ctx, &picture);
 }
 
+// A picture of 12 px over 8 mm: split by 4 alone, phi_s would span 3 fine pixels and a bar of phi_s could
+// lose one.
+TEST(pictures_of_few_pixels_are_split_until_a_bar_of_phi_s_prints_wherever_it_lies)
+{
+    enum { PICTURE_PX = 12, MASK_PX = 160 };
+    for (double phi_mm = 0.5; phi_mm < 4; phi_mm *= 2) {
+        jali_predict_options opt = {
+            .picture_mm = 8, .phi_e_mm = 0, .phi_s_mm = phi_mm, .phi_v_mm = 0.1, .recall = false};
+        jali_bitmap picture;
+        jali_reference reference;
+        CHECK_OK(jali_bitmap_create(ctx, PICTURE_PX, PICTURE_PX, &picture));
+        CHECK_OK(jali_reference_create(ctx, &picture, &opt, &reference));
+        CHECK(phi_mm / opt.picture_mm * PICTURE_PX * reference.factor >= 8);
+        int32_t wide = (int32_t)(phi_mm / opt.picture_mm * MASK_PX + 0.5);
+        for (int32_t left = 40; left < 56; left++) {
+            jali_bitmap mask;
+            jali_prediction p;
+            CHECK_OK(jali_bitmap_create(ctx, MASK_PX, MASK_PX, &mask));
+            for (int32_t y = 0; y < MASK_PX; y++)
+                for (int32_t x = left; x < left + wide; x++) jali_bitmap_set(&mask, x, y, true);
+            CHECK_OK(jali_predict(ctx, &reference, &mask, 0, false, &opt, &p));
+            CHECK_INT(p.pieces, 1);
+            jali_prediction_free(ctx, &p);
+            jali_bitmap_free(ctx, &mask);
+        }
+        jali_reference_free(ctx, &reference);
+        jali_bitmap_free(ctx, &picture);
+    }
+}
+
 // A picture with a solid square of 10 px and a speck of 2 px, printed with growth 1 px a side: the square
 // gains a rim, the speck is lost.
 TEST(the_error_rate_is_what_is_counted_by_hand)
@@ -223,6 +253,7 @@ int main(void)
         cmocka_unit_test(a_solid_bar_of_phi_s_prints_phi_e_wider_and_a_thinner_one_not_at_all),
         cmocka_unit_test(a_void_bar_of_phi_v_prints_phi_e_narrower_and_a_thinner_one_not_at_all),
         cmocka_unit_test(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair),
+        cmocka_unit_test(pictures_of_few_pixels_are_split_until_a_bar_of_phi_s_prints_wherever_it_lies),
         cmocka_unit_test(the_error_rate_is_what_is_counted_by_hand),
         cmocka_unit_test(recall_is_the_share_of_the_axis_that_prints),
         cmocka_unit_test(every_allocation_refused_once),

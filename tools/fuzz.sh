@@ -20,7 +20,7 @@ for fuzzer in "$build"/fuzz/fuzz_*; do
     if [ ! -f "$fuzzer" ] || [ ! -x "$fuzzer" ]; then continue; fi
     name=${fuzzer##*/}
     mkdir -p "$corpus/$name"
-    for seed in "$seeds"/*."${name#fuzz_}"; do
+    for seed in "$seeds"/*."${name#fuzz_}" "${0%/*}/../fuzz/corpus/${name#fuzz_}"/*; do
         [ ! -e "$seed" ] || cp "$seed" "$corpus/$name/"
     done
     if "$fuzzer" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=3000 -artifact_prefix="$corpus/$name-" \
