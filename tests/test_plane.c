@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "plane/exact.h"
+#include "plane/snap.h"
 #include "plane/triangulation.h"
 
 static void check_plane(const triangulation *plane)
@@ -177,6 +178,80 @@ TEST(contacts_are_reported_with_their_edges)
     triangulation_free(ctx, &plane);
 }
 
+// Edges on a small lattice, so that many hot pixels are met: the pieces chain each edge from end to end
+// within a unit of it, cross nowhere (the triangulation takes them all), and no point changes sides.
+static void check_snapped(const int32_t (*point)[2], int32_t points, const int32_t (*edge)[2], int32_t edges)
+{
+    snapped s;
+    triangulation plane = {0};
+    contact met;
+    int32_t crossed[2], at = 0;
+    CHECK_OK(snap_round(ctx, point, points, edge, edges, edges, &s, crossed));
+    for (int32_t i = 0; i < points; i++) CHECK(memcmp(s.point[s.home[i]], point[i], sizeof *point) == 0);
+    for (int32_t e = 0; e < edges; e++) {
+        int32_t here = s.home[edge[e][0]];
+        const int32_t *a = point[edge[e][0]], *b = point[edge[e][1]];
+        double dx = b[0] - a[0], dy = b[1] - a[1], length = hypot(dx, dy);
+        for (; at < s.piece_count && s.edge[at] == e; at++) {
+            CHECK_INT(s.piece[at][0], here);
+            here = s.piece[at][1];
+            CHECK(fabs((double)orientation(a, b, s.point[here])) <= 0.708 * length);
+        }
+        CHECK_INT(here, s.home[edge[e][1]]);
+    }
+    CHECK_INT(at, s.piece_count);
+    CHECK_OK(insert_points(ctx, &plane, (const int32_t(*)[2])s.point, s.point_count));
+    for (int32_t p = 0; p < s.point_count; p++) CHECK_INT(plane.twin[p], p);
+    CHECK_OK(
+        insert_edges(ctx, &plane, (const int32_t(*)[2])s.piece, s.piece_count, EDGE_CONTOUR, false, &met));
+    CHECK_INT(met.found, NO_CONTACT);
+    check_plane(&plane);
+    triangulation_free(ctx, &plane);
+    snapped_free(ctx, &s);
+}
+
+TEST(snapped_edges_meet_only_in_points)
+{
+    enum { MOST = 120 };
+    uint64_t random = 77;
+    for (int32_t round = 0; round < 400; round++) {
+        int32_t point[MOST][2], edge[MOST][2], points = 4 + round % 60, edges = 1 + round % (MOST / 2);
+        int32_t side = 4 + (int32_t)(next_random(&random) >> (round % 5 == 0 ? 44 : 58));
+        for (int32_t i = 0; i < points; i++)
+            for (int k = 0; k < 2; k++)
+                point[i][k] = (int32_t)((next_random(&random) >> 40) % (uint64_t)side) - side / 2;
+        for (int32_t i = 0; i < edges; i++)
+            for (int k = 0; k < 2; k++)
+                edge[i][k] = (int32_t)((next_random(&random) >> 40) % (uint64_t)points);
+        check_snapped((const int32_t(*)[2])point, points, (const int32_t(*)[2])edge, edges);
+    }
+}
+
+TEST(crossings_of_the_first_group_are_reported)
+{
+    int32_t point[6][2] = {{0, 0}, {100, 100}, {0, 100}, {100, 0}, {50, -20}, {50, 120}};
+    int32_t edge[3][2] = {{0, 1}, {4, 5}, {2, 3}}, crossed[2];
+    snapped s;
+    CHECK_OK(snap_round(ctx, (const int32_t(*)[2])point, 6, (const int32_t(*)[2])edge, 3, 1, &s, crossed));
+    CHECK_INT(crossed[0], -1);
+    CHECK_INT(s.piece_count, 6); // the three meet in one point
+    CHECK_INT(s.point_count, 7);
+    snapped_free(ctx, &s);
+    CHECK_OK(snap_round(ctx, (const int32_t(*)[2])point, 6, (const int32_t(*)[2])edge, 3, 2, &s, crossed));
+    CHECK_INT(crossed[0], 0);
+    CHECK_INT(crossed[1], 1);
+    snapped_free(ctx, &s);
+}
+
+static jali_status snap_some(jali_context *limited, void *data)
+{
+    snapped s;
+    int32_t edge[3][2] = {{0, 90}, {90, 45}, {44, 3}}, crossed[2];
+    jali_status status = snap_round(limited, data, 100, (const int32_t(*)[2])edge, 3, 0, &s, crossed);
+    snapped_free(limited, &s);
+    return status;
+}
+
 static jali_status triangulate_some(jali_context *limited, void *data)
 {
     jali_status status;
@@ -198,6 +273,7 @@ TEST(every_allocation_refused_once)
     for (int32_t i = 0; i < 100; i++)
         for (int k = 0; k < 2; k++) point[i][k] = (int32_t)(next_random(&random) >> 50);
     refuse_each_allocation(triangulate_some, point);
+    refuse_each_allocation(snap_some, point);
 }
 
 int main(void)
@@ -209,6 +285,9 @@ int main(void)
                                         close_context),
         cmocka_unit_test_setup_teardown(long_edges_through_random_points, open_context, close_context),
         cmocka_unit_test_setup_teardown(contacts_are_reported_with_their_edges, open_context, close_context),
+        cmocka_unit_test_setup_teardown(snapped_edges_meet_only_in_points, open_context, close_context),
+        cmocka_unit_test_setup_teardown(crossings_of_the_first_group_are_reported, open_context,
+                                        close_context),
         cmocka_unit_test_setup_teardown(every_allocation_refused_once, open_context, close_context),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
