@@ -235,7 +235,7 @@ static int check_cells(uint64_t seed, int32_t points, int32_t kinds, bool anchor
             wanted += 3.0 * (solid[t].top - solid[t].bottom) * (double)orientation(a, b, c);
     }
     jali_mesh mesh;
-    jali_status status = build_prisms(ctx, &plane, solid, 1, &mesh);
+    jali_status status = build_plate(ctx, &plane, solid, 1, &mesh);
     if (status == JALI_OK) {
         check_closed(&mesh);
         CHECK(volume6(&mesh, 1) == wanted);
@@ -276,7 +276,7 @@ static jali_status strip(const interval *height, int32_t count, jali_mesh *mesh)
         for (int k = 0; k < 3; k++) x += plane.point[plane.corner[4 * t + k]][0];
         solid[t] = height[x / 30];
     }
-    jali_status status = build_prisms(ctx, &plane, solid, 1, mesh);
+    jali_status status = build_plate(ctx, &plane, solid, 1, mesh);
     release(ctx, solid);
     triangulation_free(ctx, &plane);
     return status;

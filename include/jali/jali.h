@@ -30,6 +30,7 @@
 #include <jali/predict.h>
 #include <jali/read.h>
 #include <jali/sample.h>
+#include <jali/shell.h>
 #include <jali/surface.h>
 #include <jali/trace.h>
 #include <jali/write.h>

@@ -135,7 +135,7 @@ jali_status jali_carve(jali_context *ctx, const jali_contours *picture, const ja
     TRY(step(ctx, "carve", 0.6));
     int32_t thickness = (int32_t)lround(opt.thickness_mm / chart->unit_mm);
     TRY(fill_cells(ctx, &plane, (const int32_t(*)[2])edge, thickness, chart->unit_mm, solid));
-    TRY(build_prisms(ctx, &plane, solid, chart->unit_mm, mesh));
+    TRY(build_plate(ctx, &plane, solid, chart->unit_mm, mesh));
     TRY(step(ctx, "carve", 1));
 done:
     triangulation_free(ctx, &plane);

@@ -1,4 +1,4 @@
-// The solid over the cells of a triangulation: each cell is a triangle with a height interval.
+// The solid over the cells of a plane or a surface: each cell is a triangle with a height interval.
 //
 // How:     above each point of the plane stands a column with the levels at which a cell around it begins or
 //          ends. Floors and ceilings are the cells' own triangles. A wall stands on each edge where one cell
@@ -39,21 +39,20 @@ static void add_level(columns *c, int32_t p, int32_t z)
     c->count[p]++;
 }
 
-static jali_status raise_columns(jali_context *ctx, const triangulation *plane, const interval *solid,
-                                 columns *c)
+static jali_status raise_columns(jali_context *ctx, const cells *plane, const interval *solid, columns *c)
 {
     jali_status status;
     TRY(ARENA(ctx, c->first, plane->point_count + 1));
     TRY(ARENA(ctx, c->count, plane->point_count));
     TRY(ARENA(ctx, c->vertex, plane->point_count));
     memset(c->count, 0, (size_t)plane->point_count * sizeof *c->count);
-    for (int32_t t = 0; t < plane->triangle_count; t++)
+    for (int32_t t = 0; t < plane->cell_count; t++)
         for (int k = 0; k < 3 && is_solid(solid[t]); k++) c->count[plane->corner[4 * t + k]] += 2;
     c->first[0] = 0;
     for (int32_t p = 0; p < plane->point_count; p++) c->first[p + 1] = c->first[p] + c->count[p];
     TRY(ARENA(ctx, c->level, c->first[plane->point_count]));
     memset(c->count, 0, (size_t)plane->point_count * sizeof *c->count);
-    for (int32_t t = 0; t < plane->triangle_count; t++)
+    for (int32_t t = 0; t < plane->cell_count; t++)
         for (int k = 0; k < 3 && is_solid(solid[t]); k++) {
             add_level(c, plane->corner[4 * t + k], solid[t].bottom);
             add_level(c, plane->corner[4 * t + k], solid[t].top);
@@ -121,8 +120,7 @@ static void put_wall(writer *w, const columns *c, int32_t a, int32_t b, interval
     }
 }
 
-static void put_cell(writer *w, const columns *c, const triangulation *plane, const interval *solid,
-                     int32_t t)
+static void put_cell(writer *w, const columns *c, const cells *plane, const interval *solid, int32_t t)
 {
     interval mine = solid[t];
     int32_t top[3], bottom[3];
@@ -149,8 +147,8 @@ typedef struct around {
     bool solid, empty, solid_above, empty_above, both_solid, both_empty;
 } around;
 
-static around look_around(const triangulation *plane, const interval *solid, int32_t p, int32_t low,
-                          int32_t level, int32_t high)
+static around look_around(const cells *plane, const interval *solid, int32_t p, int32_t low, int32_t level,
+                          int32_t high)
 {
     around a = {0};
     int32_t first = 4 * plane->star[p];
@@ -168,7 +166,7 @@ static around look_around(const triangulation *plane, const interval *solid, int
     return a;
 }
 
-static bool is_one_fan(const triangulation *plane, const interval *solid, const columns *c, int32_t p)
+static bool is_one_fan(const cells *plane, const interval *solid, const columns *c, int32_t p)
 {
     const int32_t *level = c->level + c->first[p];
     for (int32_t i = 0; i < c->count[p]; i++) { // the slab that ends at level i, and the one above
@@ -182,58 +180,91 @@ static bool is_one_fan(const triangulation *plane, const interval *solid, const 
     return true;
 }
 
-static bool is_stepped(const triangulation *plane, const interval *solid, int32_t s)
+static bool is_stepped(const cells *plane, const interval *solid, int32_t s)
 {
     interval mine = solid[s >> 2], other = solid[plane->beside[s] >> 2];
     return is_solid(mine) && is_solid(other) && mine.top == other.bottom;
 }
 
-static jali_status check_contacts(jali_context *ctx, const triangulation *plane, const interval *solid,
-                                  const columns *c, double unit_mm)
+// A point where the solid would hang together by no more than an edge or that point, or -1.
+static int32_t find_contact(const cells *plane, const interval *solid, const columns *c)
 {
-    int32_t p = -1;
-    for (int32_t s = 0; s < 4 * plane->triangle_count && p < 0; s++)
-        if ((s & 3) != 3 && is_stepped(plane, solid, s)) p = plane->corner[next_side(s)];
-    for (int32_t q = 0; q < plane->point_count && p < 0; q++)
-        if (c->count[q] > 0 && !is_one_fan(plane, solid, c, q)) p = q;
-    if (p < 0) return JALI_OK;
-    return fail(ctx, JALI_BAD_INPUT,
-                "parts of the solid meet in no more than an edge or a point at (%.3f, %.3f) mm",
-                plane->point[p][0] * unit_mm, plane->point[p][1] * unit_mm);
+    for (int32_t s = 0; s < 4 * plane->cell_count; s++)
+        if ((s & 3) != 3 && is_stepped(plane, solid, s)) return plane->corner[next_side(s)];
+    for (int32_t p = 0; p < plane->point_count; p++)
+        if (c->count[p] > 0 && !is_one_fan(plane, solid, c, p)) return p;
+    return -1;
 }
 
-jali_status build_prisms(jali_context *ctx, const triangulation *plane, const interval *solid, double unit_mm,
-                         jali_mesh *mesh)
+void prisms_free(jali_context *ctx, prisms *p)
+{
+    release(ctx, p->vertex);
+    release(ctx, p->triangle);
+    *p = (prisms){0};
+}
+
+jali_status build_prisms(jali_context *ctx, const cells *plane, const interval *solid, prisms *built)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
     columns c;
     writer w = {0};
-    *mesh = (jali_mesh){0};
+    *built = (prisms){.contact = -1};
     TRY(raise_columns(ctx, plane, solid, &c));
-    TRY(check_contacts(ctx, plane, solid, &c, unit_mm));
-    for (int32_t t = 0; t < plane->triangle_count; t++)
+    built->contact = find_contact(plane, solid, &c);
+    if (built->contact >= 0) goto done;
+    for (int32_t t = 0; t < plane->cell_count; t++)
         if (is_solid(solid[t])) put_cell(&w, &c, plane, solid, t);
     if (w.count > INT32_MAX) {
         status = fail(ctx, JALI_LIMIT, "the solid has %lld triangles, more than 2^31", (long long)w.count);
         goto done;
     }
-    TRY(ALLOCATE(ctx, mesh->vertex, c.vertex_count));
-    TRY(ALLOCATE(ctx, mesh->triangle, w.count));
-    mesh->vertex_count = c.vertex_count;
-    mesh->triangle_count = (int32_t)w.count;
+    TRY(ALLOCATE(ctx, built->vertex, c.vertex_count));
+    TRY(ALLOCATE(ctx, built->triangle, w.count));
+    built->vertex_count = c.vertex_count;
+    built->triangle_count = (int32_t)w.count;
     for (int32_t p = 0; p < plane->point_count; p++)
         for (int32_t i = 0; i < c.count[p]; i++) {
-            double *v = mesh->vertex[c.vertex[p] + i];
-            v[0] = plane->point[p][0] * unit_mm;
-            v[1] = plane->point[p][1] * unit_mm;
-            v[2] = c.level[c.first[p] + i] * unit_mm;
+            built->vertex[c.vertex[p] + i][0] = p;
+            built->vertex[c.vertex[p] + i][1] = c.level[c.first[p] + i];
         }
-    w = (writer){.triangle = mesh->triangle};
-    for (int32_t t = 0; t < plane->triangle_count; t++)
+    w = (writer){.triangle = built->triangle};
+    for (int32_t t = 0; t < plane->cell_count; t++)
         if (is_solid(solid[t])) put_cell(&w, &c, plane, solid, t);
 done:
     arena_rewind(ctx, mark);
+    if (status != JALI_OK) prisms_free(ctx, built);
+    return status;
+}
+
+jali_status build_plate(jali_context *ctx, const triangulation *plane, const interval *solid, double unit_mm,
+                        jali_mesh *mesh)
+{
+    jali_status status;
+    prisms built = {0};
+    cells all = {plane->point_count, plane->triangle_count, plane->corner, plane->beside, plane->star};
+    *mesh = (jali_mesh){0};
+    TRY(build_prisms(ctx, &all, solid, &built));
+    if (built.contact >= 0) {
+        const int32_t *at = plane->point[built.contact];
+        status = fail(ctx, JALI_BAD_INPUT,
+                      "parts of the solid meet in no more than an edge or a point at (%.3f, %.3f) mm",
+                      at[0] * unit_mm, at[1] * unit_mm);
+        goto done;
+    }
+    TRY(ALLOCATE(ctx, mesh->vertex, built.vertex_count));
+    mesh->vertex_count = built.vertex_count;
+    for (int32_t i = 0; i < built.vertex_count; i++) {
+        const int32_t *at = plane->point[built.vertex[i][0]];
+        mesh->vertex[i][0] = at[0] * unit_mm;
+        mesh->vertex[i][1] = at[1] * unit_mm;
+        mesh->vertex[i][2] = built.vertex[i][1] * unit_mm;
+    }
+    mesh->triangle_count = built.triangle_count;
+    mesh->triangle = built.triangle;
+    built.triangle = NULL;
+done:
+    prisms_free(ctx, &built);
     if (status != JALI_OK) jali_mesh_free(ctx, mesh);
     return status;
 }

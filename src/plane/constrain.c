@@ -20,9 +20,8 @@ typedef struct pending {
     size_t cross_capacity, made_capacity, made_count;
 } pending;
 
-// The side that runs from u to v, or -1. Turns around both ends in step, so that the cost is the smaller of
-// the two degrees.
-static int32_t find_side(const triangulation *plane, int32_t u, int32_t v)
+// Turns around both ends in step.
+int32_t side_between(const triangulation *plane, int32_t u, int32_t v)
 {
     const int32_t *corner = plane->corner, *beside = plane->beside;
     int32_t first_u = 4 * plane->star[u], first_v = 4 * plane->star[v];
@@ -111,7 +110,7 @@ static jali_status clear_way(jali_context *ctx, triangulation *plane, int32_t a,
     edges->made_count = 0;
     while (left > 0) {
         crossing c = edges->cross[head];
-        int32_t s = find_side(plane, c.right, c.left);
+        int32_t s = side_between(plane, c.right, c.left);
         size_t tail = (head + left) % ring;
         head = (head + 1) % ring;
         if (!is_convex(plane, s)) {
@@ -139,7 +138,7 @@ static jali_status clear_way(jali_context *ctx, triangulation *plane, int32_t a,
 static jali_status restore_delaunay(jali_context *ctx, triangulation *plane, const pending *edges)
 {
     for (size_t i = 0; i < edges->made_count; i++) {
-        int32_t made = find_side(plane, edges->made[i].right, edges->made[i].left);
+        int32_t made = side_between(plane, edges->made[i].right, edges->made[i].left);
         if (made < 0) continue; // flipped away meanwhile
         size_t depth = 0;
         plane->stack[depth++] = made;
@@ -175,7 +174,7 @@ static jali_status insert_edge(jali_context *ctx, triangulation *plane, int32_t 
             return JALI_OK;
         }
         TRY(clear_way(ctx, plane, a, end, edges, count));
-        mark(plane, find_side(plane, a, end), kind);
+        mark(plane, side_between(plane, a, end), kind);
         TRY(restore_delaunay(ctx, plane, edges));
         a = end;
     }

@@ -68,6 +68,10 @@ jali_status insert_points(jali_context *ctx, triangulation *plane, const int32_t
 jali_status insert_edges(jali_context *ctx, triangulation *plane, const int32_t (*edge)[2], int32_t count,
                          uint8_t kind, bool through, contact *met);
 
+/// The side that runs from point u to point v (its triangle lies on the left), or -1.
+///   cost   the smaller of their degrees
+int32_t side_between(const triangulation *plane, int32_t u, int32_t v);
+
 /// The tone of each triangle: 0 outside, changing across each edge of a kind in `kinds`.
 ///   out    tone   [triangle_count] 0 or 1; ghosts 0
 jali_status label_tones(jali_context *ctx, const triangulation *plane, uint8_t kinds, uint8_t *tone);

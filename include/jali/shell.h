@@ -1,0 +1,61 @@
+// A shell: the wall between the outer skin of an object and its inner skin. Pictures are pierced through it.
+#ifndef JALI_SHELL_H
+#define JALI_SHELL_H
+
+#include <jali/chart.h>
+#include <jali/contours.h>
+#include <jali/surface.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// The wall over the triangles of `outer`: each vertex has its place on the inner skin, and what lies between
+/// is linear. {0} is valid and empty.
+typedef struct jali_shell {
+    jali_surface outer;
+    double (*inner)[3]; // [outer.mesh.vertex_count] mm
+    float (*solid)[2];  // [outer.mesh.triangle_count] the part of the wall that is solid, from 0 = inner skin
+                        // to 1 = outer skin; NULL: all of it everywhere
+    double unit_mm;     // a power of two; every coordinate is a multiple that float32 holds
+} jali_shell;
+
+JALI_API void jali_shell_free(jali_context *ctx, jali_shell *shell);
+
+/// Which triangles of the outer skin a chart covers, and where on its lattice they lie. {0} is valid and
+/// empty.
+typedef struct jali_patch {
+    int32_t point_count;
+    int32_t (*point)[2]; // [point_count] lattice units of the chart
+    int32_t *vertex;     // [point_count] of the outer skin; on both sides of a seam the same
+    double *weight;      // [point_count] 1 / depth in a perspective; NULL: the map is affine on each face
+    int32_t face_count;
+    int32_t *face;        // [face_count] triangles of the outer skin
+    int32_t (*corner)[3]; // [face_count] their corners as points, counter-clockwise on the lattice
+} jali_patch;
+
+JALI_API void jali_patch_free(jali_context *ctx, jali_patch *patch);
+
+/// Pierce a picture through a shell: its void is taken out of the wall. Contours and the edges of the surface
+/// become one exact arrangement; each of its cells lies on one triangle of the outer skin, which keeps its
+/// place.
+///   in     picture   contours on the chart's lattice: voids in a solid surrounding, whole inside the patch
+///          backing   share of the thickness, from the inner skin, that stays solid in the voids; 0 = none
+///   inout  shell     unchanged when it fails
+///   fails  JALI_NO_RESULT (a void reaches beyond the patch, or the patch covers a place of the chart twice:
+///          where is in the message), JALI_BAD_INPUT (contours that touch), JALI_LIMIT, JALI_CANCELLED,
+///          JALI_NO_MEMORY
+///   cost   O(n log n) in points of the contours and of the patch
+JALI_API jali_status jali_pierce(jali_context *ctx, const jali_contours *picture, const jali_patch *patch,
+                                 double backing, jali_shell *shell);
+
+/// The solid of a shell: outer skin, inner skin, and walls along every border.
+///   out    mesh    closed, 2-manifold at edges and vertices, outward when inner lies inside
+///   fails  JALI_BAD_INPUT (edges or vertices shared by more than two triangles or one fan; parts that would
+///          meet in an edge or a point: where is in the message), JALI_LIMIT, JALI_NO_MEMORY
+JALI_API jali_status jali_shell_solid(jali_context *ctx, const jali_shell *shell, jali_mesh *mesh);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
