@@ -33,6 +33,8 @@ typedef struct jali_chart {
     int32_t metric_columns, metric_rows, metric_step_px;
 } jali_chart;
 
+JALI_API void jali_chart_free(jali_context *ctx, jali_chart *chart);
+
 static inline double jali_chart_pixel_mm(const jali_chart *chart)
 {
     return chart->pixel_units * chart->unit_mm;

@@ -1,14 +1,29 @@
-// Lay a picture on a flat plate: choose the working grid, resample the picture to it.
+// Lay a picture on a plate or on a surface: choose the working grid, resample the picture to it.
 #ifndef JALI_PLACE_H
 #define JALI_PLACE_H
 
 #include <jali/bitmap.h>
 #include <jali/chart.h>
 #include <jali/read.h>
+#include <jali/shell.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+typedef enum jali_placing {
+    JALI_PLACE_AUTO,    // wrap where the surface comes unrolled, else project
+    JALI_PLACE_PROJECT, // as a camera sees it: the picture looks right from there
+    JALI_PLACE_WRAP     // on the unrolled surface
+} jali_placing;
+
+/// From where a projected picture looks right.
+typedef struct jali_camera {
+    double direction[3]; // of view; zeros (default): chosen so that the picture finds room, the front first
+    double up[3];        // zeros (default): z, or y when that is the direction of view
+    double from[3];      // a perspective's eye; used when perspective is set
+    bool perspective;    // default: parallel
+} jali_camera;
 
 typedef struct jali_place_options {
     double width_mm, height_mm; // size of the picture; 0 = from the other one by the picture's shape. Both
@@ -19,6 +34,12 @@ typedef struct jali_place_options {
     double phi_s_mm, phi_v_mm;  // narrowest solid and narrowest void that print, > 0 (0.3, 0.5)
     double frame_mm;            // width of the solid frame, >= 0; 0 = the picture's border is the plate's
     bool paper;                 // the paper's own grid: one working pixel an input pixel, no resampling
+    // On surfaces alone:
+    jali_placing placing;
+    jali_camera camera;
+    bool at_given;   // the picture's centre goes to the place of the surface
+    double at_mm[3]; // - projected: that lies behind this point; wrapped: nearest to it. Default: chosen
+    int32_t repeat;  // copies side by side, 1 .. 1000; 0 (default) = 1
 } jali_place_options;
 
 /// Width 70 mm, phi 0.1 / 0.3 / 0.5 mm, no frame.
@@ -36,6 +57,30 @@ JALI_API jali_place_options jali_place_defaults(void);
 ///   cost   O(input + working pixels); scratch of a few rows
 JALI_API jali_status jali_place(jali_context *ctx, const jali_picture *picture, int32_t threshold,
                                 const jali_place_options *opt, jali_chart *chart, jali_bitmap *drawing);
+
+/// The size of a surface's picture as it came about.
+typedef struct jali_placed {
+    jali_placing placing; // project or wrap
+    double stretch[2];    // least and largest length on the surface of a mm of the picture's plane, inside it
+    double direction[3];  // of view, projected
+    double centre_mm[3];  // where the picture's centre lies
+} jali_placed;
+
+/// Lay a picture on a surface.
+///   in     surface   its faces inside the picture and its frame must be free of faults
+///          opt       NULL means the defaults; frame_mm is the protected zone around the picture, which the
+///                    surface must have and which stays solid
+///   out    chart     with the metric; free with jali_chart_free
+///          patch     the faces under the picture
+///          drawing   margin included
+///          placed    may be NULL
+///   fails  as jali_place, and JALI_NO_RESULT when the surface has no room there, or hides part of it: the
+///          message says where, how much, and which size would fit
+///   cost   O(input + working pixels + faces)
+JALI_API jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_t threshold,
+                                   const jali_place_options *opt, const jali_surface *surface,
+                                   jali_chart *chart, jali_patch *patch, jali_bitmap *drawing,
+                                   jali_placed *placed);
 
 /// The input column under column x of the working grid split `per_px` times finer (1 = the grid itself), or
 /// -1 in the margin. Rows likewise, with the heights.

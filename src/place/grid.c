@@ -19,7 +19,7 @@ static jali_status check_mm(jali_context *ctx, const char *what, double mm, bool
                 largest_mm, mm);
 }
 
-jali_status check_place_options(jali_context *ctx, const jali_place_options *opt)
+static jali_status check_options(jali_context *ctx, const jali_place_options *opt)
 {
     jali_status status;
     TRY(check_mm(ctx, "the picture's width", opt->width_mm, true));
@@ -33,6 +33,16 @@ jali_status check_place_options(jali_context *ctx, const jali_place_options *opt
         status = fail(ctx, JALI_BAD_VALUE, "the picture needs a width or a height in mm");
 done:
     return status;
+}
+
+jali_status check_picture(jali_context *ctx, const jali_picture *picture, int32_t threshold,
+                          const jali_place_options *opt)
+{
+    if (picture->width_px < 1 || picture->height_px < 1)
+        return fail(ctx, JALI_BAD_VALUE, "the picture has no pixels");
+    if (threshold < 1 || threshold > 255)
+        return fail(ctx, JALI_BAD_VALUE, "the threshold must be 1 .. 255, not %d", threshold);
+    return check_options(ctx, opt);
 }
 
 // Both sizes in mm, from one of them or from two that agree.

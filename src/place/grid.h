@@ -5,8 +5,10 @@
 #include "base/base.h"
 #include <jali/place.h>
 
-/// Refuse options that are no lengths.   fails  JALI_BAD_VALUE
-jali_status check_place_options(jali_context *ctx, const jali_place_options *opt);
+/// Refuse a picture without pixels, a threshold that is none, options that are no lengths.
+///   fails  JALI_BAD_VALUE
+jali_status check_picture(jali_context *ctx, const jali_picture *picture, int32_t threshold,
+                          const jali_place_options *opt);
 
 /// Both sizes in mm, from one of them or from two that agree.   fails  JALI_BAD_VALUE, JALI_NO_RESULT
 jali_status picture_size(jali_context *ctx, const jali_picture *picture, const jali_place_options *opt,

@@ -76,11 +76,7 @@ jali_status jali_place(jali_context *ctx, const jali_picture *picture, int32_t t
     double size_mm[2];
     *chart = (jali_chart){0};
     *drawing = (jali_bitmap){0};
-    if (picture->width_px < 1 || picture->height_px < 1)
-        return fail(ctx, JALI_BAD_VALUE, "the picture has no pixels");
-    if (threshold < 1 || threshold > 255)
-        return fail(ctx, JALI_BAD_VALUE, "the threshold must be 1 .. 255, not %d", threshold);
-    TRY(check_place_options(ctx, &opt));
+    TRY(check_picture(ctx, picture, threshold, &opt));
     TRY(picture_size(ctx, picture, &opt, size_mm));
     TRY(choose_grid(ctx, picture, &opt, size_mm, chart));
     TRY(jali_bitmap_create(ctx, chart->width_px, chart->height_px, drawing));

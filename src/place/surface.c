@@ -1,0 +1,394 @@
+// Where the picture lies on a surface: the view or the unrolling, the patch of faces, the grid, the metric.
+//
+// Source:  Binary Image Carving for 3D Printing, section 3: the picture is placed by an inverse perspective,
+//          and a surface that hides part of itself inside the picture's window is refused.
+// Limits:  the lattice of a surface's chart is 1/64 of a working pixel; faces may reach 2^24 units.
+// Checked: tests/test_surface.c.
+#include <jali/place.h>
+
+#include "place/grid.h"
+#include "place/lay.h"
+#include "place/patch.h"
+#include "place/resample.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { PIXEL_UNITS = 64, HIDDEN_SAMPLES = 400, SCALE_STEPS = 24 };
+static const double COVERED = 1 - 1e-9;      // rounding of the area sum
+static const double MOST_REFINEMENT = 3;     // of the working pixel where the surface is stretched
+static const double HIDDEN_TOLERANCE = 1e-4; // of the window: samples on edges
+
+typedef struct placing_work {
+    const jali_picture *picture;
+    const jali_surface *surface;
+    jali_place_options opt;
+    double size_mm[2];
+    double ring_mm[2]; // protected zone beside and above the picture
+    camera view;
+    laid plane;
+    int32_t first, turns; // the face under the picture's centre
+    jali_chart *chart;
+    growth grown;
+    jali_placed placed;
+} placing_work;
+
+void jali_chart_free(jali_context *ctx, jali_chart *chart)
+{
+    release(ctx, chart->metric);
+    *chart = (jali_chart){0};
+}
+
+// --- The plane of the picture
+
+// The face nearest to the viewer at the plane's origin, or -1; the shift of a wrapped one in turns.
+static jali_status face_at_origin(jali_context *ctx, const laid *l, int32_t *face, int32_t *turns)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    static const double origin[2] = {0, 0};
+    view v;
+    *face = -1;
+    *turns = 0;
+    for (int32_t shift = -1; shift <= 1 && *face < 0; shift++) {
+        int32_t *all = NULL;
+        if (shift != 0 && l->around_mm == 0) continue;
+        TRY(view_create(ctx, origin, origin, 1, l->depth != NULL, &v));
+        TRY(ARENA(ctx, all, l->surface->mesh.triangle_count + 1));
+        for (int32_t t = 0; t < l->surface->mesh.triangle_count; t++) all[t] = shift;
+        draw_faces(l, NULL, all, &v);
+        *face = v.face[0];
+        *turns = shift;
+    }
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+static void point_on_face(const laid *l, int32_t face, double turns, double at[3])
+{
+    const double(*p)[2] = (const double(*)[2])l->at[face];
+    double x[3], sum = 0, share[3];
+    for (int k = 0; k < 3; k++) x[k] = p[k][0] + turns * l->around_mm;
+    for (int k = 0; k < 3; k++) {
+        int a = (k + 1) % 3, b = (k + 2) % 3;
+        share[k] = x[a] * p[b][1] - x[b] * p[a][1];
+        if (l->perspective) share[k] /= l->depth[l->surface->mesh.triangle[face][k]];
+        sum += share[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        at[k] = 0;
+        for (int i = 0; i < 3; i++)
+            at[k] += share[i] / sum * l->surface->mesh.vertex[l->surface->mesh.triangle[face][i]][k];
+    }
+}
+
+static void middle_of_box(const jali_mesh *mesh, double middle[3])
+{
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int32_t v = 0; v < mesh->vertex_count; v++) {
+            low = MIN(low, mesh->vertex[v][k]);
+            high = MAX(high, mesh->vertex[v][k]);
+        }
+        middle[k] = (low + high) / 2;
+    }
+}
+
+static jali_status project_picture(jali_context *ctx, placing_work *w)
+{
+    jali_status status;
+    double half[2] = {w->size_mm[0] / 2 + w->ring_mm[0], w->size_mm[1] / 2 + w->ring_mm[1]}, room = 1;
+    double centre[3];
+    memcpy(centre, w->opt.at_mm, sizeof centre);
+    if (!w->opt.at_given) middle_of_box(&w->surface->mesh, centre);
+    if (!w->opt.at_given && !w->opt.camera.perspective) {
+        TRY(find_view(ctx, w->surface, &w->opt, half, &w->view, &room));
+    } else {
+        jali_camera look = w->opt.camera;
+        if (!look.perspective && look.direction[0] == 0 && look.direction[1] == 0 && look.direction[2] == 0)
+            look.direction[1] = 1; // the front
+        TRY(aim(ctx, &look, centre, &w->view));
+        if (look.perspective) { // lengths are true where the view meets the surface, not at the middle of it
+            TRY(lay_by_camera(ctx, w->surface, &w->view, &w->plane));
+            TRY(face_at_origin(ctx, &w->plane, &w->first, &w->turns));
+            if (w->first >= 0) {
+                point_on_face(&w->plane, w->first, 0, centre);
+                TRY(aim(ctx, &look, centre, &w->view));
+            }
+            laid_free(ctx, &w->plane);
+        }
+    }
+    memcpy(w->placed.direction, w->view.forward, sizeof w->placed.direction);
+    TRY(lay_by_camera(ctx, w->surface, &w->view, &w->plane));
+done:
+    return status;
+}
+
+// The middle of the unrolled surface, or its place nearest to a point: of the nearest triangle's middle.
+static void unrolled_centre(const placing_work *w, double uv[2])
+{
+    const jali_surface *s = w->surface;
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, nearest = INFINITY;
+    for (int32_t t = 0; t < s->mesh.triangle_count; t++) {
+        double away = 0, middle_uv[2] = {0, 0};
+        if (isnan(s->uv[t][0][0])) continue;
+        for (int k = 0; k < 3; k++) {
+            double middle = 0;
+            for (int i = 0; i < 3; i++) middle += s->mesh.vertex[s->mesh.triangle[t][i]][k] / 3;
+            away += (middle - w->opt.at_mm[k]) * (middle - w->opt.at_mm[k]);
+            for (int i = 0; i < 2; i++) {
+                low[i] = MIN(low[i], s->uv[t][k][i]);
+                high[i] = MAX(high[i], s->uv[t][k][i]);
+                middle_uv[i] += s->uv[t][k][i] / 3;
+            }
+        }
+        if (!w->opt.at_given || away >= nearest) continue;
+        nearest = away;
+        memcpy(uv, middle_uv, sizeof middle_uv);
+    }
+    for (int i = 0; i < 2 && !w->opt.at_given; i++) uv[i] = (low[i] + high[i]) / 2;
+}
+
+static jali_status wrap_picture(jali_context *ctx, placing_work *w)
+{
+    jali_status status;
+    double uv[2] = {0, 0}, around = w->surface->around_mm;
+    if (!w->surface->uv)
+        return fail(ctx, JALI_BAD_VALUE,
+                    "this surface does not come unrolled, so nothing can be wrapped on it; "
+                    "--place project is accepted");
+    if (around > 0 && w->size_mm[0] + 2 * w->ring_mm[0] > around) { // the zones on both sides become one
+        w->ring_mm[0] = (around - w->size_mm[0]) / 2;
+        if (w->ring_mm[0] < w->opt.phi_s_mm / 2)
+            return fail(
+                ctx, JALI_NO_RESULT,
+                "the picture is %.2f mm wide and the surface %.2f mm around: a bar of phi_s, %g mm, must "
+                "stay, so that at most %.2f mm fit",
+                w->size_mm[0], around, w->opt.phi_s_mm, around - w->opt.phi_s_mm);
+    }
+    unrolled_centre(w, uv);
+    TRY(lay_by_unrolling(ctx, w->surface, uv, &w->plane));
+done:
+    return status;
+}
+
+// --- The grid
+
+static jali_status choose_surface_grid(jali_context *ctx, placing_work *w, double pixel_mm)
+{
+    jali_status status;
+    double margin = ceil(margin_mm(&w->opt) / pixel_mm) + 2;
+    double columns = w->opt.paper ? w->picture->width_px : MAX(floor(w->size_mm[0] / pixel_mm + 0.5), 1);
+    double rows = w->opt.paper ? w->picture->height_px
+                               : MAX(floor(columns * w->picture->height_px / w->picture->width_px + 0.5), 1);
+    TRY(check_grid(ctx, columns + 2 * margin, rows + 2 * margin, pixel_mm));
+    jali_chart_free(ctx, w->chart);
+    *w->chart = (jali_chart){
+        .width_px = (int32_t)(columns + 2 * margin),
+        .height_px = (int32_t)(rows + 2 * margin),
+        .margin_px = (int32_t)margin,
+        .outside_solid = true,
+        .pixel_units = PIXEL_UNITS,
+        .unit_mm = w->size_mm[0] / columns / PIXEL_UNITS,
+    };
+done:
+    return status;
+}
+
+// --- Does the surface have room there, and is it seen?
+
+static void window(const placing_work *w, double scale, double low[2], double high[2])
+{
+    double middle[2] = {w->chart->width_px * (PIXEL_UNITS / 2.0), w->chart->height_px * (PIXEL_UNITS / 2.0)};
+    for (int i = 0; i < 2; i++) {
+        double half = (scale * w->size_mm[i] / 2 + w->ring_mm[i]) / w->chart->unit_mm;
+        low[i] = middle[i] - half;
+        high[i] = middle[i] + half;
+    }
+}
+
+static double cover(const placing_work *w, double scale)
+{
+    double low[2], high[2];
+    window(w, scale, low, high);
+    return covered_area(&w->grown.patch, low, high) / ((high[0] - low[0]) * (high[1] - low[1]));
+}
+
+// Which ninth of the window is covered least.
+static const char *worst_part(const placing_work *w)
+{
+    static const char *const name[9] = {"lower left", "lower middle", "lower right",  "left",       "middle",
+                                        "right",      "upper left",   "upper middle", "upper right"};
+    double low[2], high[2], least = INFINITY;
+    int worst = 4;
+    window(w, 1, low, high);
+    for (int n = 0; n < 9; n++) {
+        double from[2], to[2];
+        int at[2] = {n % 3, n / 3};
+        for (int i = 0; i < 2; i++) {
+            from[i] = low[i] + at[i] * (high[i] - low[i]) / 3;
+            to[i] = from[i] + (high[i] - low[i]) / 3;
+        }
+        double covered = covered_area(&w->grown.patch, from, to);
+        if (covered >= least) continue;
+        least = covered;
+        worst = n;
+    }
+    return name[worst];
+}
+
+static double largest_scale(const placing_work *w)
+{
+    double fits = 0, fails = 1;
+    for (int i = 0; i < SCALE_STEPS; i++) {
+        double middle = (fits + fails) / 2;
+        if (cover(w, middle) >= COVERED)
+            fits = middle;
+        else
+            fails = middle;
+    }
+    return fits;
+}
+
+static jali_status check_room(jali_context *ctx, const placing_work *w)
+{
+    double covered = cover(w, 1);
+    if (covered >= COVERED) return JALI_OK;
+    double scale = largest_scale(w);
+    char offer[128];
+    if (scale * MIN(w->size_mm[0], w->size_mm[1]) > 1)
+        snprintf(offer, sizeof offer, "a width of %.4g mm fits there",
+                 floor(scale * w->size_mm[0] * 10) / 10);
+    else
+        snprintf(offer, sizeof offer, "no size fits there; another place (--at) or view (--dir) may do");
+    return fail(ctx, JALI_NO_RESULT,
+                "the surface %s %.3g %% of the picture's window of %.4g x %.4g mm, most at its %s; %s",
+                w->plane.depth ? "ends or turns away within" : "ends within", 100 * MAX(1 - covered, 1e-9),
+                w->size_mm[0] + 2 * w->ring_mm[0], w->size_mm[1] + 2 * w->ring_mm[1], worst_part(w), offer);
+}
+
+// Anything of the object before the patch? A picture seen in part does not look right.
+static jali_status check_hidden(jali_context *ctx, const placing_work *w)
+{
+    jali_status status = JALI_OK;
+    arena_mark mark = arena_here(ctx);
+    view v;
+    int64_t hidden = 0, where[2] = {0, 0};
+    if (!w->plane.depth) return JALI_OK;
+    double low[2] = {-w->size_mm[0] / 2, -w->size_mm[1] / 2}, high[2] = {-low[0], -low[1]};
+    TRY(view_create(ctx, low, high, MAX(w->size_mm[0], w->size_mm[1]) / HIDDEN_SAMPLES, true, &v));
+    draw_faces(&w->plane, NULL, NULL, &v);
+    for (int64_t i = 0; i < (int64_t)v.columns * v.rows; i++) {
+        if (v.face[i] < 0 || w->grown.taken[v.face[i]]) continue;
+        hidden++;
+        where[0] += i % v.columns;
+        where[1] += i / v.columns;
+    }
+    double all = (double)v.columns * v.rows;
+    if ((double)hidden > HIDDEN_TOLERANCE * all)
+        status =
+            fail(ctx, JALI_NO_RESULT,
+                 "the object hides %.2g %% of the picture from the viewer, around %.0f %% from its left and "
+                 "%.0f %% from its top; another view (--dir) or place (--at), or a smaller picture is needed",
+                 100 * (double)hidden / all, 100.0 * (double)where[0] / (double)hidden / v.columns,
+                 100 - 100.0 * (double)where[1] / (double)hidden / v.rows);
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+// --- Steps
+
+static jali_status chart_patch(jali_context *ctx, placing_work *w, double pixel_mm)
+{
+    jali_status status;
+    TRY(choose_surface_grid(ctx, w, pixel_mm));
+    jali_patch_free(ctx, &w->grown.patch);
+    TRY(grow_patch(ctx, &w->plane, w->chart, w->first, w->turns, &w->grown));
+    TRY(check_room(ctx, w));
+    TRY(fill_metric(ctx, &w->plane, &w->grown, w->chart, w->placed.stretch));
+done:
+    return status;
+}
+
+static jali_status lay_picture(jali_context *ctx, placing_work *w)
+{
+    jali_status status;
+    bool wrap = w->opt.placing == JALI_PLACE_WRAP || (w->opt.placing == JALI_PLACE_AUTO && w->surface->uv);
+    w->placed.placing = wrap ? JALI_PLACE_WRAP : JALI_PLACE_PROJECT;
+    w->ring_mm[0] = w->ring_mm[1] = MAX(w->opt.frame_mm, w->opt.phi_s_mm);
+    TRY(wrap ? wrap_picture(ctx, w) : project_picture(ctx, w));
+    TRY(face_at_origin(ctx, &w->plane, &w->first, &w->turns));
+    if (w->first < 0)
+        return fail(ctx, JALI_NO_RESULT, "the picture's centre is beside the surface; --at gives another");
+    point_on_face(&w->plane, w->first, w->turns, w->placed.centre_mm);
+    double pixel_mm = w->opt.paper          ? w->size_mm[0] / w->picture->width_px
+                      : w->opt.pixel_mm > 0 ? w->opt.pixel_mm
+                                            : automatic_pixel(&w->opt);
+    TRY(chart_patch(ctx, w, pixel_mm));
+    TRY(check_hidden(ctx, w));
+    // Widths count on the surface: where it is stretched they are fewer pixels.
+    double finer = MIN(w->placed.stretch[1], MOST_REFINEMENT);
+    if (finer > 1.05 && !w->opt.paper && w->opt.pixel_mm == 0) TRY(chart_patch(ctx, w, pixel_mm / finer));
+done:
+    return status;
+}
+
+// Copies side by side.
+static jali_status repeated(jali_context *ctx, const jali_picture *picture, int32_t count, jali_picture *row)
+{
+    jali_status status;
+    *row = (jali_picture){.width_px = picture->width_px * count, .height_px = picture->height_px};
+    if (picture->width_px > INT32_MAX / count)
+        return fail(ctx, JALI_LIMIT, "%d copies of a picture %d px wide are too many", count,
+                    picture->width_px);
+    TRY(ALLOCATE(ctx, row->grey, (size_t)row->width_px * (size_t)row->height_px));
+    for (int32_t y = 0; y < row->height_px; y++)
+        for (int32_t i = 0; i < count; i++)
+            memcpy(row->grey + (size_t)y * (size_t)row->width_px + (size_t)i * (size_t)picture->width_px,
+                   picture->grey + (size_t)y * (size_t)picture->width_px, (size_t)picture->width_px);
+done:
+    return status;
+}
+
+jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_t threshold,
+                          const jali_place_options *given, const jali_surface *surface, jali_chart *chart,
+                          jali_patch *patch, jali_bitmap *drawing, jali_placed *placed)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    jali_picture row = {0};
+    placing_work w = {.surface = surface, .opt = given ? *given : jali_place_defaults(), .chart = chart};
+    *chart = (jali_chart){0};
+    *patch = (jali_patch){0};
+    *drawing = (jali_bitmap){0};
+    TRY(step(ctx, "place", 0));
+    if (w.opt.frame_mm <= 0) w.opt.frame_mm = w.opt.phi_s_mm; // the surroundings are solid in any case
+    TRY(check_picture(ctx, picture, threshold, &w.opt));
+    w.picture = picture;
+    if (w.opt.repeat > 1) {
+        TRY(repeated(ctx, picture, w.opt.repeat, &row));
+        w.picture = &row;
+        w.opt.width_mm *= w.opt.repeat;
+    }
+    TRY(picture_size(ctx, w.picture, &w.opt, w.size_mm));
+    TRY(lay_picture(ctx, &w));
+    TRY(step(ctx, "place", 0.5));
+    TRY(jali_bitmap_create(ctx, chart->width_px, chart->height_px, drawing));
+    TRY(resample(ctx, w.picture, threshold, chart->margin_px, drawing));
+    whiten_margin(chart, drawing);
+    *patch = w.grown.patch;
+    w.grown.patch = (jali_patch){0};
+    if (placed) *placed = w.placed;
+done:
+    jali_picture_free(ctx, &row);
+    jali_patch_free(ctx, &w.grown.patch);
+    laid_free(ctx, &w.plane);
+    arena_rewind(ctx, mark);
+    if (status != JALI_OK) {
+        jali_bitmap_free(ctx, drawing);
+        jali_chart_free(ctx, chart);
+    }
+    return status;
+}
