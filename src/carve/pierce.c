@@ -12,6 +12,7 @@
 // Checked: tests/test_shell.c.
 #include <jali/shell.h>
 
+#include "carve/slivers.h"
 #include "mesh/sides.h"
 #include "plane/exact.h"
 #include "plane/snap.h"
@@ -338,6 +339,7 @@ static jali_status build(jali_context *ctx, piercing *p, double backing)
     jali_status status;
     jali_shell out = {0};
     uint8_t *covered;
+    int32_t left;
     int32_t triangles = p->shell->outer.mesh.triangle_count;
     TRY(ARENA(ctx, covered, triangles + 1));
     memset(covered, 0, (size_t)triangles);
@@ -346,9 +348,12 @@ static jali_status build(jali_context *ctx, piercing *p, double backing)
     copy_untouched(p, covered, &out);
     for (int32_t t = 0; t < p->plane.triangle_count; t++)
         if (stays(p, t, backing)) add_cell(p, t, backing, &out);
+    TRY(mend_slivers(ctx, &out, &left));
     jali_shell_free(ctx, p->shell);
     *p->shell = out;
+    out = (jali_shell){0};
 done:
+    jali_shell_free(ctx, &out);
     return status;
 }
 

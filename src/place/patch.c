@@ -29,9 +29,10 @@ static int32_t find_point(point_table *table, jali_patch *patch, int32_t vertex,
     return p;
 }
 
-// A face's corners on the lattice; false when it does not lie counter-clockwise there or misses the grid.
+// A face's corners on the lattice; false when it does not lie counter-clockwise there or stays `around_grid`
+// units away from the grid.
 static bool corners_on_lattice(const laid *l, const jali_chart *chart, int32_t face, int32_t turns,
-                               int32_t at[3][2], bool *beyond)
+                               double around_grid, int32_t at[3][2], bool *beyond)
 {
     double per_mm = 1 / chart->unit_mm, half = chart->pixel_units / 2.0;
     double size[2] = {(double)chart->width_px * chart->pixel_units,
@@ -45,7 +46,9 @@ static bool corners_on_lattice(const laid *l, const jali_chart *chart, int32_t f
             low[i] = MIN(low[i], exact[k][i]);
             high[i] = MAX(high[i], exact[k][i]);
         }
-    if (high[0] < 0 || high[1] < 0 || low[0] > size[0] || low[1] > size[1]) return false;
+    if (MIN(high[0], high[1]) < -around_grid || low[0] > size[0] + around_grid ||
+        low[1] > size[1] + around_grid)
+        return false;
     *beyond = MIN(low[0], low[1]) < -COORDINATE_LIMIT || MAX(high[0], high[1]) > COORDINATE_LIMIT;
     if (*beyond) return false;
     for (int k = 0; k < 3; k++)
@@ -82,8 +85,8 @@ static void take_face(const laid *l, growth *g, point_table *table, int32_t face
     }
 }
 
-static jali_status spread(jali_context *ctx, const laid *l, const jali_chart *chart, const sides *linked,
-                          growth *g, point_table *table)
+static jali_status spread(jali_context *ctx, const laid *l, const jali_chart *chart, double around_grid,
+                          const sides *linked, growth *g, point_table *table)
 {
     for (int32_t next = 0; next < g->patch.face_count; next++) {
         int32_t face = g->patch.face[next];
@@ -93,7 +96,7 @@ static jali_status spread(jali_context *ctx, const laid *l, const jali_chart *ch
             if (o == NO_SIDE || g->taken[o >> 2]) continue;
             double turns = turns_across(l, linked, 4 * face + k, g->turns[face]);
             if (isnan(turns)) continue;
-            if (corners_on_lattice(l, chart, o >> 2, (int32_t)turns, at, &beyond))
+            if (corners_on_lattice(l, chart, o >> 2, (int32_t)turns, around_grid, at, &beyond))
                 take_face(l, g, table, o >> 2, (int32_t)turns, (const int32_t(*)[2])at);
             if (beyond)
                 return fail(ctx, JALI_LIMIT,
@@ -105,13 +108,14 @@ static jali_status spread(jali_context *ctx, const laid *l, const jali_chart *ch
     return JALI_OK;
 }
 
-jali_status grow_patch(jali_context *ctx, const laid *l, const jali_chart *chart, int32_t first,
-                       int32_t turns, growth *g)
+jali_status grow_patch(jali_context *ctx, const laid *l, const jali_chart *chart, double around_grid_mm,
+                       int32_t first, int32_t turns, growth *g)
 {
     jali_status status;
     const jali_mesh *mesh = &l->surface->mesh;
     sides linked = {0};
     point_table table = {.slots = 64};
+    double around_grid = around_grid_mm / chart->unit_mm;
     int32_t at[3][2];
     bool beyond;
     *g = (growth){0};
@@ -129,9 +133,9 @@ jali_status grow_patch(jali_context *ctx, const laid *l, const jali_chart *chart
     if (l->perspective) TRY(ALLOCATE(ctx, g->patch.weight, most + 1));
     TRY(ALLOCATE(ctx, g->patch.face, mesh->triangle_count + 1));
     TRY(ALLOCATE(ctx, g->patch.corner, mesh->triangle_count + 1));
-    if (corners_on_lattice(l, chart, first, turns, at, &beyond)) {
+    if (corners_on_lattice(l, chart, first, turns, around_grid, at, &beyond)) {
         take_face(l, g, &table, first, turns, (const int32_t(*)[2])at);
-        TRY(spread(ctx, l, chart, &linked, g, &table));
+        TRY(spread(ctx, l, chart, around_grid, &linked, g, &table));
     }
 done:
     sides_free(ctx, &linked);

@@ -13,12 +13,13 @@ typedef struct growth {
 } growth;
 
 /// The faces that are reached from a first one through faces that lie counter-clockwise on the lattice and
-/// touch the chart's grid.
-///   in     first   a face under the picture's centre
-///          turns   of the first face
+/// come near the chart's grid.
+///   in     around_grid_mm   how far beyond the grid the patch is wanted
+///          first            a face under the picture's centre
+///          turns            of the first face
 ///   fails  JALI_LIMIT (a face that leaves the lattice), JALI_NO_MEMORY
-jali_status grow_patch(jali_context *ctx, const laid *l, const jali_chart *chart, int32_t first,
-                       int32_t turns, growth *g);
+jali_status grow_patch(jali_context *ctx, const laid *l, const jali_chart *chart, double around_grid_mm,
+                       int32_t first, int32_t turns, growth *g);
 
 /// The area of the rectangle that the patch covers, lattice units squared. Exact but for double rounding.
 double covered_area(const jali_patch *patch, const double low[2], const double high[2]);

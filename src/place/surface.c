@@ -305,7 +305,8 @@ static jali_status chart_patch(jali_context *ctx, placing_work *w, double pixel_
     jali_status status;
     TRY(choose_surface_grid(ctx, w, pixel_mm));
     jali_patch_free(ctx, &w->grown.patch);
-    TRY(grow_patch(ctx, &w->plane, w->chart, w->first, w->turns, &w->grown));
+    TRY(grow_patch(ctx, &w->plane, w->chart, MAX(w->ring_mm[0], w->ring_mm[1]), w->first, w->turns,
+                   &w->grown));
     TRY(check_room(ctx, w));
     TRY(fill_metric(ctx, &w->plane, &w->grown, w->chart, w->placed.stretch));
 done:
