@@ -2,6 +2,9 @@
 //
 //     picture -> threshold -> place -> optimise -> trace -> carve -> check
 //                                 \___ predict ___/
+//
+// A plate is carved from its contours; a surface is hollowed out first, then each picture is pierced through
+// the wall, then the wall becomes a solid.
 #include <jali/jali.h>
 #include "raster/raster.h"
 #include "base/base.h"
@@ -33,6 +36,7 @@ jali_options jali_defaults(void)
 void jali_result_free(jali_context *ctx, jali_result *result)
 {
     jali_bitmap_free(ctx, &result->input);
+    jali_chart_free(ctx, &result->chart);
     jali_optimised_free(ctx, &result->optimised);
     jali_prediction_free(ctx, &result->input_print);
     jali_prediction_free(ctx, &result->connected_print);
@@ -126,46 +130,120 @@ static jali_status judge_mask(jali_context *ctx, const jali_options *opt, jali_r
     return status;
 }
 
+// Seconds since the last lap go to a stage.
+static void lap(double seconds[JALI_STAGES], int32_t stage, double *begun)
+{
+    double now = now_seconds();
+    seconds[stage] += now - *begun;
+    *begun = now;
+}
+
+// From the picture to contours: what a plate and a surface have in common. With a shell, its outer skin is
+// where the picture lies.
+static jali_status image_stages(jali_context *ctx, jali_picture *picture, const jali_options *opt,
+                                const jali_shell *shell, jali_patch *patch, jali_contours *outline,
+                                jali_result *r)
+{
+    jali_status status;
+    jali_bitmap drawing = {0};
+    double begun = now_seconds();
+    TRY(black_and_white(ctx, picture, opt, r));
+    lap(r->seconds, JALI_STAGE_THRESHOLD, &begun);
+    if (shell)
+        TRY(jali_place_on(ctx, picture, r->threshold, &opt->place, &shell->outer, &r->chart, patch, &drawing,
+                          &r->placed));
+    else
+        TRY(jali_place(ctx, picture, r->threshold, &opt->place, &r->chart, &drawing));
+    lap(r->seconds, JALI_STAGE_PLACE, &begun);
+    TRY(jali_optimise(ctx, &drawing, &r->chart, &opt->optimise, &r->optimised));
+    lap(r->seconds, JALI_STAGE_OPTIMISE, &begun);
+    if (opt->predict) TRY(predict(ctx, opt, r));
+    TRY(judge_mask(ctx, opt, r));
+    lap(r->seconds, JALI_STAGE_PREDICT, &begun);
+    if (opt->solid) TRY(jali_trace(ctx, &r->optimised.mask, &r->chart, &opt->trace, outline));
+    lap(r->seconds, JALI_STAGE_TRACE, &begun);
+done:
+    jali_bitmap_free(ctx, &drawing);
+    return status;
+}
+
 jali_status jali_make(jali_context *ctx, jali_picture *picture, const jali_options *given, jali_result *r)
 {
     jali_status status;
     jali_options opt = agreed(given);
-    jali_bitmap drawing = {0};
     jali_contours outline = {0};
-    double begun = now_seconds();
     *r = (jali_result){0};
-#define LAP(stage)                                                                                           \
-    do {                                                                                                     \
-        double t = now_seconds();                                                                            \
-        r->seconds[stage] = t - begun;                                                                       \
-        begun = t;                                                                                           \
-    } while (0)
-
-    TRY(black_and_white(ctx, picture, &opt, r));
-    LAP(JALI_STAGE_THRESHOLD);
-    TRY(jali_place(ctx, picture, r->threshold, &opt.place, &r->chart, &drawing));
-    LAP(JALI_STAGE_PLACE);
-    TRY(jali_optimise(ctx, &drawing, &r->chart, &opt.optimise, &r->optimised));
-    LAP(JALI_STAGE_OPTIMISE);
-    if (opt.predict) TRY(predict(ctx, &opt, r));
-    TRY(judge_mask(ctx, &opt, r));
-    LAP(JALI_STAGE_PREDICT);
+    TRY(image_stages(ctx, picture, &opt, NULL, NULL, &outline, r));
+    double begun = now_seconds();
     if (opt.solid) {
-        TRY(jali_trace(ctx, &r->optimised.mask, &r->chart, &opt.trace, &outline));
         TRY(jali_plate(ctx, &outline, &r->chart, &opt.carve, &r->contours));
-        LAP(JALI_STAGE_TRACE);
         TRY(jali_carve(ctx, &outline, &r->chart, &opt.carve, &r->mesh));
-        LAP(JALI_STAGE_CARVE);
+        lap(r->seconds, JALI_STAGE_CARVE, &begun);
         if (opt.check) {
             TRY(jali_check(ctx, &r->mesh, NULL, &r->check));
             r->closed = r->check.solid;
             r->one_piece = r->one_piece && r->check.pieces == 1;
         }
-        LAP(JALI_STAGE_CHECK);
+        lap(r->seconds, JALI_STAGE_CHECK, &begun);
     }
 done:
     if (status != JALI_OK) jali_result_free(ctx, r);
-    jali_bitmap_free(ctx, &drawing);
     jali_contours_free(ctx, &outline);
+    return status;
+}
+
+// --- Surfaces
+
+void jali_object_free(jali_context *ctx, jali_object *object)
+{
+    jali_mesh_free(ctx, &object->mesh);
+    *object = (jali_object){0};
+}
+
+static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const jali_options *given,
+                              double thickness_mm, jali_shell *shell, jali_result *r)
+{
+    jali_status status;
+    jali_options opt = agreed(given);
+    jali_patch patch = {0};
+    TRY(image_stages(ctx, picture, &opt, shell, &patch, &r->contours, r));
+    double begun = now_seconds();
+    if (opt.solid)
+        TRY(jali_pierce(ctx, &r->contours, &patch, MIN(opt.backing_mm / thickness_mm, 1), shell));
+    lap(r->seconds, JALI_STAGE_CARVE, &begun);
+done:
+    jali_patch_free(ctx, &patch);
+    return status;
+}
+
+jali_status jali_make_on(jali_context *ctx, jali_surface *surface, const jali_shell_options *given,
+                         jali_picture *picture, const jali_options *opt, int32_t count, jali_result *result,
+                         jali_object *object)
+{
+    jali_status status = JALI_OK;
+    jali_shell_options wall = given ? *given : jali_shell_defaults();
+    jali_shell shell = {0};
+    double begun = now_seconds();
+    *object = (jali_object){.one_piece = true};
+    for (int32_t i = 0; i < count; i++) result[i] = (jali_result){0};
+    TRY(jali_shell_create(ctx, surface, &wall, &shell, &object->wall));
+    lap(object->seconds, JALI_STAGE_CARVE, &begun);
+    for (int32_t i = 0; i < count; i++) {
+        TRY(pierce_one(ctx, &picture[i], &opt[i], wall.thickness_mm, &shell, &result[i]));
+        object->one_piece = object->one_piece && result[i].one_piece;
+    }
+    begun = now_seconds();
+    if (count > 0 && !opt[0].solid) goto done;
+    TRY(jali_shell_solid(ctx, &shell, &object->mesh));
+    lap(object->seconds, JALI_STAGE_CARVE, &begun);
+    TRY(jali_check(ctx, &object->mesh, NULL, &object->check));
+    object->closed = object->check.solid;
+    object->one_piece = object->one_piece && object->check.pieces == 1;
+    lap(object->seconds, JALI_STAGE_CHECK, &begun);
+done:
+    jali_surface_free(ctx, surface);
+    jali_shell_free(ctx, &shell);
+    for (int32_t i = 0; i < count && status != JALI_OK; i++) jali_result_free(ctx, &result[i]);
+    if (status != JALI_OK) jali_object_free(ctx, object);
     return status;
 }

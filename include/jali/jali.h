@@ -1,4 +1,4 @@
-// jali: from a picture to a printable pierced plate. This header brings all others.
+// jali: from a picture to a printable pierced plate or vessel. This header brings all others.
 //
 //     jali_context *ctx;
 //     jali_context_create(NULL, &ctx);
@@ -58,6 +58,7 @@ typedef struct jali_options {
     jali_optimise_options optimise; // its phi_e, phi_s, phi_v and paper count for place and predict as well
     jali_trace_options trace;
     jali_carve_options carve;
+    double backing_mm; // on surfaces: a film at the inner skin that stays in the voids; 0 (default) = none
     bool predict; // say what input, connected only and result come out as (default true)
     bool recall;  // with the share of fine detail that survives (default true; slower)
     bool solid;   // trace and carve too (default true); false = the image stages alone
@@ -73,6 +74,7 @@ typedef struct jali_result {
     jali_bitmap input;    // the picture in black and white, its own resolution
     int32_t input_pieces; // white components, 4-connected
     jali_chart chart;
+    jali_placed placed; // on a surface: where
     jali_optimised optimised; // the mask and how it came about
     // What comes out of the printer, when predicted: of the input as it is, connected only, and of the
     // result.
@@ -87,7 +89,30 @@ typedef struct jali_result {
 
 JALI_API void jali_result_free(jali_context *ctx, jali_result *result);
 
-/// The whole pipeline on a picture.
+/// An object with pictures pierced through it. {0} is valid and empty.
+typedef struct jali_object {
+    jali_shell_report wall;
+    jali_mesh mesh;
+    jali_check_report check;
+    bool one_piece, closed;
+    double seconds[JALI_STAGES]; // of what its pictures share
+} jali_object;
+
+JALI_API void jali_object_free(jali_context *ctx, jali_object *object);
+
+/// Pictures on one surface, each with options of its own; no two may overlap.
+///   in     opt       [count]
+///          wall      NULL means the defaults
+///   inout  surface   taken: empty afterwards
+///          picture   [count] rewritten by a local threshold only
+///   out    result    [count] all but mesh and check; free each with jali_result_free
+///          object    free with jali_object_free
+///   fails  whatever a stage fails with
+JALI_API jali_status jali_make_on(jali_context *ctx, jali_surface *surface, const jali_shell_options *wall,
+                                  jali_picture *picture, const jali_options *opt, int32_t count,
+                                  jali_result *result, jali_object *object);
+
+/// The whole pipeline on a picture, as a plate.
 ///   in     opt       NULL means the defaults
 ///   inout  picture   rewritten by a local threshold only
 ///   out    result    free with jali_result_free
