@@ -1,27 +1,24 @@
-// jali carve PICTURE and jali adapt PICTURE: the whole pipeline, or its image stages alone.
+// jali carve PICTURE and jali adapt PICTURE: the whole pipeline, or its image stages alone; one picture on a
+// plate, or one or more on a surface.
 #include "outputs.h"
 #include "base/bytes.h"
 
 #include <stdio.h>
-
-static const char *name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return strcmp(path, "-") == 0 ? "stdin" : slash ? slash + 1 : path;
-}
 
 // The parameters that make the object again, for those who find it later.
 static jali_status describe(jali_context *ctx, const settings *set, const jali_result *r, jali_bytes *text)
 {
     const jali_optimise_options *printer = &set->make.optimise;
     double pixel_mm = jali_chart_pixel_mm(&r->chart);
-    char words[256];
+    char words[400];
     snprintf(words, sizeof words,
-             "jali %s: %.4g x %.4g mm, phi %g / %g / %g mm, frame %g mm, thickness %g mm%s", jali_version(),
-             (r->chart.width_px - 2 * r->chart.margin_px) * pixel_mm,
+             "jali %s: %.4g x %.4g mm, phi %g / %g / %g mm, frame %g mm, thickness %g mm%s%s%.100s",
+             jali_version(), (r->chart.width_px - 2 * r->chart.margin_px) * pixel_mm,
              (r->chart.height_px - 2 * r->chart.margin_px) * pixel_mm, printer->phi_e_mm, printer->phi_s_mm,
-             printer->phi_v_mm, set->make.place.frame_mm, set->make.carve.thickness_mm,
-             printer->paper ? ", the paper's method" : "");
+             printer->phi_v_mm, set->make.place.frame_mm,
+             set->surface ? set->wall.thickness_mm : set->make.carve.thickness_mm,
+             printer->paper ? ", the paper's method" : "", set->surface ? ", surface " : "",
+             set->surface ? set->surface : "");
     return bytes_append(ctx, text, words, strlen(words) + 1);
 }
 
@@ -37,10 +34,11 @@ static jali_status without_margin(jali_context *ctx, const jali_bitmap *mask, in
     return JALI_OK;
 }
 
-static jali_status make_bytes(jali_context *ctx, const settings *set, const jali_result *r, const char *path,
-                              jali_bytes *bytes)
+static jali_status make_bytes(jali_context *ctx, const made *m, const char *path, jali_bytes *bytes)
 {
     jali_status status;
+    const settings *set = &m->set[0];
+    const jali_result *r = &m->result[0];
     jali_bytes parameters = {0};
     jali_bitmap picture = {0};
     jali_format format = strcmp(path, "-") != 0 ? jali_format_of(path)
@@ -48,11 +46,15 @@ static jali_status make_bytes(jali_context *ctx, const settings *set, const jali
                                                 : JALI_FORMAT_PNG;
     jali_product product = {.pixel_mm = jali_chart_pixel_mm(&r->chart)};
     jali_write_options opt = jali_write_defaults();
+    bool flat = format == JALI_FORMAT_PNG || format == JALI_FORMAT_SVG || format == JALI_FORMAT_DXF;
+    if (flat && m->count > 1)
+        return fail(ctx, JALI_BAD_VALUE, "%s shows one picture and the job has %d; 3MF and STL hold them all",
+                    path, m->count);
     TRY(describe(ctx, set, r, &parameters));
     if (format == JALI_FORMAT_PNG) TRY(without_margin(ctx, &r->optimised.mask, r->chart.margin_px, &picture));
     opt.title = name_of(set->operand);
     opt.parameters = (const char *)parameters.data;
-    product.mesh = &r->mesh;
+    product.mesh = &m->object.mesh;
     product.contours = &r->contours;
     product.bitmap = &picture;
     TRY(jali_write_bytes(ctx, format, &product, &opt, bytes));
@@ -62,25 +64,24 @@ done:
     return status;
 }
 
-static jali_status write_everything(jali_context *ctx, const settings *set, const jali_picture *picture,
-                                    const jali_result *r)
+static jali_status write_everything(jali_context *ctx, const settings *set, const made *m)
 {
     jali_status status = JALI_OK;
     jali_bytes bytes[MOST_OUTPUTS + 2] = {0};
     output out[MOST_OUTPUTS + 2];
     int32_t count = 0;
     for (int32_t i = 0; i < set->output_count; i++) {
-        TRY(make_bytes(ctx, set, r, set->output[i], &bytes[count]));
+        TRY(make_bytes(ctx, m, set->output[i], &bytes[count]));
         out[count] = (output){set->output[i], &bytes[count]};
         count++;
     }
     if (set->json) {
-        TRY(figures_json(ctx, set, picture, r, &bytes[count]));
+        TRY(figures_json(ctx, m, &bytes[count]));
         out[count] = (output){set->json, &bytes[count]};
         count++;
     }
     if (set->report) {
-        TRY(report_html(ctx, set, picture, r, &bytes[count]));
+        TRY(report_html(ctx, m, &bytes[count]));
         out[count] = (output){set->report, &bytes[count]};
         count++;
     }
@@ -90,10 +91,15 @@ done:
     return status;
 }
 
-static void tell(jali_context *ctx, const settings *set, const jali_picture *picture, const jali_result *r)
+static void tell_picture(const settings *set, const jali_picture *picture, const jali_result *r)
 {
-    double seconds = 0;
-    for (int32_t i = 0; i < JALI_STAGES; i++) seconds += r->seconds[i];
+    if (set->surface && r->placed.placing == JALI_PLACE_PROJECT)
+        say(set, "projected around (%.4g, %.4g, %.4g) mm, seen along (%.3g, %.3g, %.3g)",
+            r->placed.centre_mm[0], r->placed.centre_mm[1], r->placed.centre_mm[2], r->placed.direction[0],
+            r->placed.direction[1], r->placed.direction[2]);
+    if (set->surface)
+        say(set, "a mm of the picture is %.3g to %.3g mm on the surface", r->placed.stretch[0],
+            r->placed.stretch[1]);
     say(set, "%d x %d px in %d white piece%s; %d bridge%s laid", picture->width_px, picture->height_px,
         r->input_pieces, r->input_pieces == 1 ? "" : "s", r->optimised.bridges,
         r->optimised.bridges == 1 ? "" : "s");
@@ -101,38 +107,125 @@ static void tell(jali_context *ctx, const settings *set, const jali_picture *pic
         say(set, "predicted print: %.2f %% of it wrong (%.2f %% when only connected), %d piece%s",
             100 * r->result_print.error_rate, 100 * r->connected_print.error_rate, r->result_print.pieces,
             r->result_print.pieces == 1 ? "" : "s");
+}
+
+static void tell(jali_context *ctx, const made *m)
+{
+    const settings *set = &m->set[0];
+    const jali_shell_report *wall = &m->object.wall;
+    double seconds = 0;
+    for (int32_t i = 0; i < m->count; i++) {
+        if (m->count > 1) say(set, "%s:", m->set[i].operand);
+        tell_picture(&m->set[i], &m->picture[i], &m->result[i]);
+        for (int32_t k = 0; k < JALI_STAGES; k++) seconds += m->result[i].seconds[k];
+    }
+    for (int32_t k = 0; k < JALI_STAGES; k++) seconds += m->object.seconds[k];
+    if (set->surface && wall->thinned > 0)
+        say(set,
+            "the wall is thinner than %g mm at %d places of the surface, %.3g mm at (%.4g, %.4g, %.4g) mm",
+            set->wall.thickness_mm, wall->thinned, wall->thinnest_mm, wall->thinnest_at_mm[0],
+            wall->thinnest_at_mm[1], wall->thinnest_at_mm[2]);
     if (set->make.solid)
-        say(set, "%d triangles, %.4g cm3, %s", r->mesh.triangle_count, r->check.volume_mm3 / 1000,
-            r->closed ? "closed and manifold" : "not a solid");
+        say(set, "%d triangles, %.4g cm3, %s", m->object.mesh.triangle_count,
+            m->object.check.volume_mm3 / 1000, m->object.closed ? "closed and manifold" : "not a solid");
     say(set, "%.2f s, %.0f MB", seconds, (double)jali_peak_memory_bytes(ctx) / 1e6);
 }
 
-static jali_status keep_promises(jali_context *ctx, const settings *set, const jali_result *r)
+static jali_status keep_promises(jali_context *ctx, const made *m)
 {
-    bool closed = !set->make.solid || r->closed;
-    if (r->one_piece && r->printable && closed) return JALI_OK;
+    bool closed = !m->set[0].make.solid || m->object.closed, printable = true;
+    for (int32_t i = 0; i < m->count; i++) printable &= m->result[i].printable;
+    if (m->object.one_piece && printable && closed) return JALI_OK;
     return fail(ctx, JALI_BROKEN, "done, but a promise is not kept:%s%s%s",
-                r->one_piece ? "" : " it is not one piece;",
-                r->printable ? "" : " some details are below the printer's widths;",
+                m->object.one_piece ? "" : " it is not one piece;",
+                printable ? "" : " some details are below the printer's widths;",
                 closed ? "" : " the mesh is not a solid;");
 }
 
-static jali_status make(jali_context *ctx, const settings *set, bool solid)
+// A plate is an object with one picture.
+static jali_status make_plate(jali_context *ctx, made *m)
+{
+    jali_result *r = &m->result[0];
+    jali_status status = jali_make(ctx, &m->picture[0], &m->set[0].make, r);
+    if (status != JALI_OK) return status;
+    m->object.mesh = r->mesh;
+    m->object.check = r->check;
+    m->object.one_piece = r->one_piece;
+    m->object.closed = r->closed;
+    r->mesh = (jali_mesh){0};
+    return JALI_OK;
+}
+
+static jali_status make_surface(jali_context *ctx, const settings *set, made *m)
 {
     jali_status status;
-    jali_picture picture = {0};
-    jali_result result = {0};
-    settings own = *set;
-    own.make.solid = solid;
-    own.make.optimise.details = set->report || set->json;
-    TRY(load_picture(ctx, &own, &picture));
-    TRY(jali_make(ctx, &picture, &own.make, &result));
-    TRY(write_everything(ctx, &own, &picture, &result));
-    tell(ctx, &own, &picture, &result);
-    status = keep_promises(ctx, &own, &result);
+    jali_surface surface = {0};
+    jali_options *opt = NULL;
+    TRY(ALLOCATE(ctx, opt, m->count));
+    for (int32_t i = 0; i < m->count; i++) opt[i] = m->set[i].make;
+    TRY(jali_surface_make(ctx, set->surface, NULL, &surface));
+    TRY(jali_make_on(ctx, &surface, &set->wall, m->picture, opt, m->count, m->result, &m->object));
 done:
-    jali_result_free(ctx, &result);
-    jali_picture_free(ctx, &picture);
+    jali_surface_free(ctx, &surface);
+    release(ctx, opt);
+    return status;
+}
+
+static void made_free(jali_context *ctx, made *m)
+{
+    for (int32_t i = 0; i < m->count; i++) {
+        if (m->result) jali_result_free(ctx, &m->result[i]);
+        if (m->picture) jali_picture_free(ctx, &m->picture[i]);
+    }
+    release(ctx, m->result);
+    release(ctx, m->picture);
+    release(ctx, m->set);
+    jali_object_free(ctx, &m->object);
+    *m = (made){0};
+}
+
+// One picture from the command line, or those of a job.
+static jali_status collect(jali_context *ctx, settings *set, bool solid, job *j, made *m)
+{
+    jali_status status = JALI_OK;
+    if (set->job) TRY(load_job(ctx, set, j));
+    m->count = set->job ? j->count : 1;
+    TRY(ALLOCATE(ctx, m->set, m->count));
+    TRY(ALLOCATE_CLEARED(ctx, m->picture, m->count));
+    TRY(ALLOCATE_CLEARED(ctx, m->result, m->count));
+    for (int32_t i = 0; i < m->count; i++) {
+        m->set[i] = set->job ? j->each[i] : *set;
+        m->set[i].surface = set->surface;
+        m->set[i].wall = set->wall;
+        m->set[i].make.solid = solid;
+        m->set[i].make.optimise.details = set->report || set->json;
+        TRY(load_picture(ctx, &m->set[i], &m->picture[i]));
+    }
+done:
+    if (status != JALI_OK && !m->set) m->count = 0;
+    return status;
+}
+
+static jali_status make(jali_context *ctx, const settings *given, bool solid)
+{
+    jali_status status;
+    settings set = *given;
+    made m = {0};
+    job j = {0};
+    bool on_surface;
+    TRY(collect(ctx, &set, solid, &j, &m));
+    on_surface = set.surface && strcmp(set.surface, "plate") != 0;
+    if (!on_surface)
+        for (int32_t i = 0; i < m.count; i++) m.set[i].surface = NULL;
+    if (!on_surface && m.count > 1)
+        TRY(fail(ctx, JALI_BAD_VALUE, "a plate takes one picture; several need a surface"));
+    TRY(on_surface ? make_surface(ctx, &set, &m) : make_plate(ctx, &m));
+    TRY(write_everything(ctx, &set, &m));
+    tell(ctx, &m);
+    status = keep_promises(ctx, &m);
+done:
+    made_free(ctx, &m);
+    job_free(ctx, &j);
     return status;
 }
 

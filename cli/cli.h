@@ -27,6 +27,10 @@ typedef struct settings {
     const char *json, *report;
     jali_read_options read;
     jali_options make;       // of all stages
+    const char *surface;     // what to carve, as jali_surface_make takes it; NULL = a plate
+    jali_shell_options wall; // of a surface
+    double thickness_mm;     // of plate or wall; 0 = as usual for either
+    const char *job;         // file with the pictures of one surface
     int32_t size_px;         // of a sample
     bool skip_intersections; // of check
     jali_context_options context;
@@ -48,6 +52,8 @@ typedef enum option_group {
     GROUP_SAMPLE = 256,
     GROUP_CHECK = 512,
     GROUP_RUN = 1024, // every verb
+    GROUP_SURFACE = 2048,
+    GROUP_JOB = 4096,
 } option_group;
 
 typedef struct verb {
@@ -68,16 +74,40 @@ jali_status run_carve(jali_context *ctx, const settings *set);
 jali_status run_check(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 
+/// The last part of a path, for people.
+const char *name_of(const char *path);
+
 /// The picture the user named, an SVG too where librsvg is at hand.
 jali_status load_picture(jali_context *ctx, const settings *set, jali_picture *picture);
 
+/// What a run made: one object, and what was found of each of its pictures. {0} is valid and empty.
+typedef struct made {
+    int32_t count;
+    settings *set;         // [count] one a picture
+    jali_picture *picture; // [count]
+    jali_result *result;   // [count]
+    jali_object object;    // a plate too; empty when only pictures were made
+} made;
+
+/// The pictures of one surface, from a file. {0} is valid and empty.
+typedef struct job {
+    int32_t count;
+    settings *each; // [count]
+    void *root;     // the parsed file: settings point into it
+    char **text;    // [text_count] and into these
+    size_t text_count, text_capacity;
+} job;
+
+/// Read set->job; its "surface" and its wall go to `set`, each picture gets a copy with options of its own.
+///   fails  JALI_IO, JALI_BAD_INPUT (which key of which picture), JALI_NO_MEMORY
+jali_status load_job(jali_context *ctx, settings *set, job *j);
+void job_free(jali_context *ctx, job *j);
+
 /// What a run found, as JSON (docs/json.md); appended, with a line end.
-jali_status figures_json(jali_context *ctx, const settings *set, const jali_picture *picture,
-                         const jali_result *result, jali_bytes *json);
+jali_status figures_json(jali_context *ctx, const made *m, jali_bytes *json);
 
 /// The same for people: one HTML file with its pictures inside.
-jali_status report_html(jali_context *ctx, const settings *set, const jali_picture *picture,
-                        const jali_result *result, jali_bytes *html);
+jali_status report_html(jali_context *ctx, const made *m, jali_bytes *html);
 
 #ifdef JALI_HAVE_RSVG
 bool looks_like_svg(const uint8_t *bytes, size_t size);

@@ -46,36 +46,65 @@ static json_t *predict_of(const settings *set, const jali_result *r)
                      print_of(&r->connected_print, recall), "result", print_of(&r->result_print, recall));
 }
 
-static json_t *mesh_of(const settings *set, const jali_result *r)
+static json_t *mesh_of(const made *m)
 {
-    if (!set->make.solid) return json_null();
+    const jali_object *r = &m->object;
+    if (!m->set[0].make.solid) return json_null();
     return json_pack("{s:i, s:i, s:i, s:b, s:b, s:I, s:f}", "vertices", r->mesh.vertex_count, "triangles",
                      r->mesh.triangle_count, "components", r->check.pieces, "watertight", r->check.closed,
                      "manifold", r->check.manifold, "self_intersections",
                      (json_int_t)r->check.intersections.count, "volume_mm3", r->check.volume_mm3);
 }
 
-static json_t *seconds_of(const jali_result *r)
+static json_t *seconds_of(const made *m)
 {
     json_t *seconds = json_object();
     double total = 0;
     for (int32_t i = 0; i < JALI_STAGES; i++) {
-        json_object_set_new(seconds, jali_stage_name(i), json_real(r->seconds[i]));
-        total += r->seconds[i];
+        double stage = m->object.seconds[i];
+        for (int32_t k = 0; k < m->count; k++) stage += m->result[k].seconds[i];
+        json_object_set_new(seconds, jali_stage_name(i), json_real(stage));
+        total += stage;
     }
     json_object_set_new(seconds, "total", json_real(total));
     return seconds;
 }
 
-static json_t *promises_of(const settings *set, const jali_result *r)
+static json_t *promises_of(const made *m)
 {
-    return json_pack("{s:b, s:b, s:o}", "one_piece", r->one_piece, "printable", r->printable, "closed",
-                     set->make.solid ? json_boolean(r->closed) : json_null());
+    bool printable = true;
+    for (int32_t i = 0; i < m->count; i++) printable &= m->result[i].printable;
+    return json_pack("{s:b, s:b, s:o}", "one_piece", m->object.one_piece, "printable", printable, "closed",
+                     m->set[0].make.solid ? json_boolean(m->object.closed) : json_null());
 }
 
-// A part that could not be made leaves the whole unmade: jansson's "o" of NULL gives NULL.
-static json_t *figures_of(jali_context *ctx, const settings *set, const jali_picture *picture,
-                          const jali_result *r)
+static json_t *vector_of(const double v[3])
+{
+    return json_pack("[f, f, f]", v[0], v[1], v[2]);
+}
+
+// Where a picture lies on the surface.
+static json_t *place_of(const jali_placed *p)
+{
+    bool wrapped = p->placing == JALI_PLACE_WRAP;
+    return json_pack("{s:s, s:o, s:o, s:[f, f]}", "placing", wrapped ? "wrap" : "project", "centre_mm",
+                     vector_of(p->centre_mm), "direction", wrapped ? json_null() : vector_of(p->direction),
+                     "stretch", p->stretch[0], p->stretch[1]);
+}
+
+static json_t *surface_of(const made *m)
+{
+    const settings *set = &m->set[0];
+    const jali_shell_report *wall = &m->object.wall;
+    if (!set->surface) return json_null();
+    return json_pack("{s:s, s:f, s:f, s:o, s:i}", "name", set->surface, "thickness_mm",
+                     set->wall.thickness_mm, "thinnest_mm", wall->thinnest_mm, "thinnest_at_mm",
+                     vector_of(wall->thinnest_at_mm), "thinned", wall->thinned);
+}
+
+// What is said of each picture. A part that could not be made leaves the whole unmade: jansson's "o" of NULL
+// gives NULL.
+static json_t *picture_of(const settings *set, const jali_picture *picture, const jali_result *r)
 {
     const jali_optimise_options *printer = &set->make.optimise;
     double pixel_mm = jali_chart_pixel_mm(&r->chart);
@@ -83,23 +112,43 @@ static json_t *figures_of(jali_context *ctx, const settings *set, const jali_pic
             rows = r->chart.height_px - 2 * r->chart.margin_px;
     const int32_t *kernel = r->optimised.kernels_px;
     return json_pack(
-        "{s:i, s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:{s:f, s:f, s:f}, s:{s:i, s:i, s:i},"
-        " s:{s:i, s:I, s:i}, s:o, s:o, s:o, s:o, s:o, s:f}",
-        "version", 1, "input", "width_px", picture->width_px, "height_px", picture->height_px,
-        "white_components", r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm,
-        rows * pixel_mm, "grid_px", columns, rows, "pixel_mm", pixel_mm, "printer", "phi_e_mm",
-        printer->phi_e_mm, "phi_s_mm", printer->phi_s_mm, "phi_v_mm", printer->phi_v_mm, "kernels_px",
-        "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2], "connect", "bridges",
-        r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels, "pieces_dropped",
-        r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict", predict_of(set, r), "mesh",
-        mesh_of(set, r), "promises", promises_of(set, r), "seconds", seconds_of(r), "peak_memory_mb",
-        (double)jali_peak_memory_bytes(ctx) / 1e6);
+        "{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:{s:f, s:f, s:f}, s:{s:i, s:i, s:i},"
+        " s:{s:i, s:I, s:i}, s:o, s:o}",
+        "input", "width_px", picture->width_px, "height_px", picture->height_px, "white_components",
+        r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm, rows * pixel_mm, "grid_px",
+        columns, rows, "pixel_mm", pixel_mm, "place", set->surface ? place_of(&r->placed) : json_null(),
+        "printer", "phi_e_mm", printer->phi_e_mm, "phi_s_mm", printer->phi_s_mm, "phi_v_mm",
+        printer->phi_v_mm, "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2],
+        "connect", "bridges", r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels,
+        "pieces_dropped", r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict",
+        predict_of(set, r));
 }
 
-jali_status figures_json(jali_context *ctx, const settings *set, const jali_picture *picture,
-                         const jali_result *result, jali_bytes *json)
+// The first picture's figures stand at the top; a job lists all of them as "pictures" too.
+static json_t *figures_of(jali_context *ctx, const made *m)
 {
-    json_t *figures = figures_of(ctx, set, picture, result);
+    json_t *figures = picture_of(&m->set[0], &m->picture[0], &m->result[0]);
+    json_t *object = json_pack("{s:i, s:o, s:o, s:o, s:o, s:f}", "version", 1, "surface", surface_of(m),
+                               "mesh", mesh_of(m), "promises", promises_of(m), "seconds", seconds_of(m),
+                               "peak_memory_mb", (double)jali_peak_memory_bytes(ctx) / 1e6);
+    if (figures && object && m->count > 1) {
+        json_t *pictures = json_array();
+        for (int32_t i = 0; i < m->count; i++)
+            json_array_append_new(pictures, picture_of(&m->set[i], &m->picture[i], &m->result[i]));
+        json_object_set_new(figures, "pictures", pictures);
+    }
+    if (object && json_object_update(object, figures) == 0) {
+        json_decref(figures);
+        return object;
+    }
+    json_decref(figures);
+    json_decref(object);
+    return NULL;
+}
+
+jali_status figures_json(jali_context *ctx, const made *m, jali_bytes *json)
+{
+    json_t *figures = figures_of(ctx, m);
     char *text = figures ? json_dumps(figures, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     jali_status status =
         text ? bytes_print(ctx, json, "%s\n", text) : fail(ctx, JALI_NO_MEMORY, "no memory for the figures");

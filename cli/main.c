@@ -13,8 +13,9 @@ enum {
 };
 
 static const verb verbs[] = {
-    {"carve", "PICTURE", "make a printable plate of a picture",
-     IMAGE | GROUP_PLATE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".3mf.stl.svg.dxf.png", run_carve},
+    {"carve", "PICTURE", "carve a picture through a plate or a surface, ready to print",
+     IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JOB | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN,
+     ".3mf.stl.svg.dxf.png", run_carve},
     {"adapt", "PICTURE", "make the picture printable, and stop there",
      IMAGE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
@@ -23,7 +24,7 @@ static const verb verbs[] = {
      GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
     {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | OUTPUT_AND_RUN, ".png",
      run_sample},
-    {"list", "KIND", "list what is built in: samples", GROUP_RUN, "", run_list},
+    {"list", "KIND", "list what is built in: samples, surfaces", GROUP_RUN, "", run_list},
 };
 
 enum { VERB_COUNT = sizeof verbs / sizeof *verbs };
@@ -36,7 +37,7 @@ const verb *verb_list(int32_t *count)
 
 static int print_help(void)
 {
-    printf("jali carves a black and white picture through a plate, ready to print.\n\n");
+    printf("jali carves a black and white picture through a plate or a vessel, ready to print.\n\n");
     for (int32_t i = 0; i < VERB_COUNT; i++) {
         char head[64];
         snprintf(head, sizeof head, "jali %s %s", verbs[i].name, verbs[i].operand ? verbs[i].operand : "");

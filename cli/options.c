@@ -21,7 +21,11 @@ typedef enum value_kind {
     CROP,
     KERNELS,
     ROTATE,
-    PROGRESS
+    PROGRESS,
+    PLACING,
+    VECTOR,
+    AT,
+    CAMERA
 } value_kind;
 
 typedef struct option {
@@ -83,14 +87,35 @@ static const option options[] = {
     {"no-predict", NULL, FLAG_OFF, GROUP_METHOD, FIELD(make.predict), 0, 0, 0,
      "do not say what the printer makes of it"},
 
-    {"thickness", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.thickness_mm), 0.01, 1000, "mm",
-     "thickness of the plate (4)"},
+    {"thickness", "MM", NUMBER, GROUP_PLATE, FIELD(thickness_mm), 0.01, 1000, "mm",
+     "thickness of the plate (4), or of a surface's wall (2)"},
     {"corner", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.corner_radius_mm), 0, 1000, "mm",
      "radius of the plate's corners (0)"},
     {"hole", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.hole_diameter_mm), 0, 100, "mm",
      "diameter of a hole to hang it by (0: none)"},
     {"deviation", "MM", NUMBER, GROUP_PLATE, FIELD(make.trace.deviation_mm), 0.0001, 10, "mm",
      "how far outlines may leave the smooth curve (0.01)"},
+
+    {"surface", "SHAPE|FILE", TEXT, GROUP_SURFACE, FIELD(surface), 0, 0, 0,
+     "what to carve: a shape such as vase:h=120 (\"jali list surfaces\") or a model file (a flat plate)"},
+    {"place", "auto|project|wrap", PLACING, GROUP_SURFACE, 0, 0, 0, 0,
+     "as seen by a camera, or on the unrolled surface (auto: wrap where it comes unrolled)"},
+    {"at", "X,Y,Z", AT, GROUP_SURFACE, 0, 0, 0, 0,
+     "the picture's centre lies behind this point, or next to it when wrapped (found)"},
+    {"dir", "X,Y,Z", VECTOR, GROUP_SURFACE, FIELD(make.place.camera.direction), 0, 0, 0,
+     "direction in which a projected picture is seen (where there is room, the front first)"},
+    {"up", "X,Y,Z", VECTOR, GROUP_SURFACE, FIELD(make.place.camera.up), 0, 0, 0,
+     "what is up in a projected picture (0,0,1)"},
+    {"camera", "from=X,Y,Z[,to=X,Y,Z][,fov=DEG]", CAMERA, GROUP_SURFACE, 0, 0, 0, 0,
+     "a perspective: the eye, where it looks at, and the picture's width as an angle"},
+    {"repeat", "N", WHOLE, GROUP_SURFACE, FIELD(make.repeat), 1, 1000, 0,
+     "so many copies side by side; without a size they fill the way around (1)"},
+    {"backing", "MM", NUMBER, GROUP_SURFACE, FIELD(make.backing_mm), 0, 1000, "mm",
+     "a film inside that stays behind the voids of a surface (0: none)"},
+    {"thinnest", "MM", NUMBER, GROUP_SURFACE, FIELD(wall.least_mm), 0.01, 1000, "mm",
+     "the least a surface's wall may be where it cannot have its thickness (0.3)"},
+    {"job", "FILE", TEXT, GROUP_JOB, FIELD(job), 0, 0, 0,
+     "several pictures on one surface, as JSON, in place of PICTURE (docs/job.md)"},
 
     {"size", "PX", WHOLE, GROUP_SAMPLE, FIELD(size_px), 16, 32768, "px", "side of the picture (1000)"},
     {"skip-intersections", NULL, FLAG, GROUP_CHECK, FIELD(skip_intersections), 0, 0, 0,
@@ -116,6 +141,7 @@ settings default_settings(void)
     settings set = {
         .read = jali_read_defaults(),
         .make = jali_defaults(),
+        .wall = jali_shell_defaults(),
         .context = jali_context_defaults(),
         .size_px = 1000,
     };
@@ -268,6 +294,63 @@ static bool parse_progress(const char *text, settings *set, char *sentence)
     return wrong(sentence, "--progress takes auto, plain or none, not \"%.40s\"", text);
 }
 
+static bool parse_placing(const char *text, settings *set, char *sentence)
+{
+    static const char *const names[] = {"auto", "project", "wrap"};
+    for (int32_t i = 0; i < 3; i++)
+        if (strcmp(text, names[i]) == 0) {
+            set->make.place.placing = (jali_placing)i;
+            return true;
+        }
+    return wrong(sentence, "--place takes auto, project or wrap, not \"%.40s\"", text);
+}
+
+// Three finite numbers with commas between them; *end is where they end.
+static bool read_vector(const char *text, double vector[3], const char **end)
+{
+    for (int32_t k = 0; k < 3; k++) {
+        char *after;
+        vector[k] = strtod(text, &after);
+        if (after == text || !isfinite(vector[k]) || fabs(vector[k]) > 1e6) return false;
+        if (k < 2 && *after != ',') return false;
+        text = k < 2 ? after + 1 : after;
+    }
+    *end = text;
+    return true;
+}
+
+static bool parse_vector(const option *o, const char *text, double vector[3], char *sentence)
+{
+    const char *end;
+    if (read_vector(text, vector, &end) && *end == 0) return true;
+    return wrong(sentence, "--%s takes three numbers such as 0,-40,25, not \"%.60s\"", o->name, text);
+}
+
+// from=X,Y,Z, then to=X,Y,Z and fov=DEGREES in any order.
+static bool parse_camera(const char *text, settings *set, char *sentence)
+{
+    jali_place_options *place = &set->make.place;
+    const char *rest = text;
+    place->camera.perspective = false;
+    while (*rest) {
+        bool fits = false;
+        if (strncmp(rest, "from=", 5) == 0) {
+            fits = place->camera.perspective = read_vector(rest + 5, place->camera.from, &rest);
+        } else if (strncmp(rest, "to=", 3) == 0) {
+            fits = place->at_given = read_vector(rest + 3, place->at_mm, &rest);
+        } else if (strncmp(rest, "fov=", 4) == 0) {
+            char *after;
+            place->camera.fov_deg = strtod(rest + 4, &after);
+            fits = after != rest + 4 && place->camera.fov_deg > 0 && place->camera.fov_deg < 170;
+            rest = after;
+        }
+        if (!fits || (*rest && *rest++ != ','))
+            return wrong(sentence, "--camera takes from=X,Y,Z[,to=X,Y,Z][,fov=DEGREES], not \"%.80s\"", text);
+    }
+    if (place->camera.perspective) return true;
+    return wrong(sentence, "--camera needs from=X,Y,Z, where the eye is");
+}
+
 static bool add_output(const char *text, settings *set, char *sentence)
 {
     if (set->output_count == MOST_OUTPUTS)
@@ -291,6 +374,10 @@ static bool set_option(const option *o, const char *text, settings *set, char *s
     case CROP: return parse_crop(text, set, sentence);
     case ROTATE: return parse_rotate(o, text, set, sentence);
     case PROGRESS: return parse_progress(text, set, sentence);
+    case PLACING: return parse_placing(text, set, sentence);
+    case CAMERA: return parse_camera(text, set, sentence);
+    case VECTOR: return parse_vector(o, text, field, sentence);
+    case AT: return set->make.place.at_given = parse_vector(o, text, set->make.place.at_mm, sentence);
     case NUMBER:
         if (!parse_number(o, text, &number, sentence)) return false;
         *(double *)field = number;
@@ -337,6 +424,28 @@ static bool set_operand(const verb *v, const char *text, settings *set, char *se
     return true;
 }
 
+// What follows from options together.
+void settle_options(settings *set)
+{
+    jali_place_options *place = &set->make.place;
+    bool all_around =
+        set->make.repeat > 0 && place->placing != JALI_PLACE_PROJECT; // then that gives the size
+    if (place->width_mm == 0 && place->height_mm == 0 && place->camera.fov_deg == 0 && !all_around)
+        place->width_mm = jali_place_defaults().width_mm;
+    if (set->thickness_mm > 0) set->make.carve.thickness_mm = set->wall.thickness_mm = set->thickness_mm;
+}
+
+bool set_option_named(const char *name, const char *text, uint32_t groups, settings *set,
+                      char sentence[SENTENCE_BYTES])
+{
+    const option *o = find_option(name, strlen(name));
+    if (!o || !(o->group & groups)) return wrong(sentence, "there is no option \"%.40s\" here", name);
+    if (!o->value && strcmp(text, "true") && strcmp(text, "false"))
+        return wrong(sentence, "\"%s\" takes true or false", name);
+    if (!o->value && strcmp(text, "false") == 0) return true;
+    return set_option(o, text, set, sentence);
+}
+
 bool parse_options(const verb *v, int argc, char **argv, settings *set, char sentence[SENTENCE_BYTES])
 {
     bool options_ended = false;
@@ -349,11 +458,13 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
             return false;
     }
     if (set->help) return true;
-    if (v->operand && !set->operand) return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
+    if (set->job && set->operand)
+        return wrong(sentence, "--job names the pictures; \"%.60s\" is one too many", set->operand);
+    if (v->operand && !set->operand && !set->job)
+        return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
     if (*v->suffixes && set->output_count == 0)
         return wrong(sentence, "jali %s needs an output file: -o NAME%.4s", v->name, v->suffixes);
-    if (set->make.place.width_mm == 0 && set->make.place.height_mm == 0)
-        set->make.place.width_mm = jali_place_defaults().width_mm;
+    settle_options(set);
     set->context.max_memory_bytes = (uint64_t)(set->max_memory_mb * 1e6);
     return true;
 }

@@ -4,6 +4,12 @@
 
 #include <math.h>
 
+const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return strcmp(path, "-") == 0 ? "stdin" : slash ? slash + 1 : path;
+}
+
 static const size_t max_svg_bytes = (size_t)1 << 28;
 
 #ifdef JALI_HAVE_RSVG

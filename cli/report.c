@@ -166,7 +166,6 @@ static jali_status append_maps(jali_context *ctx, const settings *set, const jal
         TRY(append_map(ctx, &error, "Printed as carved here",
                        KEY("lost", "solid that is lost") KEY("closed", "voids that close"), html));
     }
-    if (set->make.solid) TRY(append_thumbnail(ctx, &r->mesh, html));
 done:
     return status;
 }
@@ -225,33 +224,74 @@ done:
     return status;
 }
 
-jali_status report_html(jali_context *ctx, const settings *set, const jali_picture *picture,
-                        const jali_result *r, jali_bytes *html)
+static jali_status append_picture(jali_context *ctx, const settings *set, const jali_picture *picture,
+                                  const jali_result *r, jali_bytes *html)
 {
     jali_status status;
     double pixel_mm = jali_chart_pixel_mm(&r->chart);
-    TRY(bytes_append(ctx, html, head, sizeof head - 1));
-    TRY(bytes_print(ctx, html, "<h1>"));
-    TRY(append_escaped(ctx, set->operand, html));
     TRY(bytes_print(ctx, html,
-                    "</h1><p>%d x %d px in %d white pieces, %.4g x %.4g mm on a grid of %.4g mm; printer "
-                    "%g / %g / %g mm (growth, narrowest solid, narrowest void); %d bridges.</p><ul>",
+                    "<p>%d x %d px in %d white pieces, %.4g x %.4g mm on a grid of %.4g mm; printer "
+                    "%g / %g / %g mm (growth, narrowest solid, narrowest void); %d bridges.</p>",
                     picture->width_px, picture->height_px, r->input_pieces,
                     (r->chart.width_px - 2 * r->chart.margin_px) * pixel_mm,
                     (r->chart.height_px - 2 * r->chart.margin_px) * pixel_mm, pixel_mm,
                     set->make.optimise.phi_e_mm, set->make.optimise.phi_s_mm, set->make.optimise.phi_v_mm,
                     r->optimised.bridges));
-    TRY(append_promise(ctx, "One piece", r->one_piece, html));
-    TRY(append_promise(ctx, "Nothing below the printer's widths", r->printable, html));
-    if (set->make.solid) TRY(append_promise(ctx, "A closed, manifold solid", r->closed, html));
-    TRY(bytes_print(ctx, html, "</ul>"));
+    if (set->surface)
+        TRY(bytes_print(ctx, html, "<p>%s: a mm of the picture is %.3g to %.3g mm on the surface.</p>",
+                        r->placed.placing == JALI_PLACE_WRAP ? "Wrapped" : "Projected", r->placed.stretch[0],
+                        r->placed.stretch[1]));
     if (set->make.predict) TRY(append_predictions(ctx, set, r, html));
-    if (set->make.solid)
-        TRY(bytes_print(ctx, html, "<p>%d triangles, %.4g cm<sup>3</sup>.</p>", r->mesh.triangle_count,
-                        r->check.volume_mm3 / 1000));
     TRY(bytes_print(ctx, html, "<main>\n"));
     TRY(append_maps(ctx, set, r, html));
-    TRY(bytes_print(ctx, html, "</main><p>jali %s</p></html>\n", jali_version()));
+    TRY(bytes_print(ctx, html, "</main>"));
+done:
+    return status;
+}
+
+static jali_status append_object(jali_context *ctx, const made *m, jali_bytes *html)
+{
+    jali_status status;
+    const settings *set = &m->set[0];
+    bool printable = true;
+    for (int32_t i = 0; i < m->count; i++) printable &= m->result[i].printable;
+    TRY(bytes_print(ctx, html, "<ul>"));
+    TRY(append_promise(ctx, "One piece", m->object.one_piece, html));
+    TRY(append_promise(ctx, "Nothing below the printer's widths", printable, html));
+    if (set->make.solid) TRY(append_promise(ctx, "A closed, manifold solid", m->object.closed, html));
+    TRY(bytes_print(ctx, html, "</ul>"));
+    if (!set->make.solid) goto done;
+    if (set->surface) {
+        TRY(bytes_print(ctx, html, "<p>Surface "));
+        TRY(append_escaped(ctx, set->surface, html));
+        TRY(bytes_print(ctx, html, ", a wall of %g mm, %.3g mm where it is thinnest.</p>",
+                        set->wall.thickness_mm, m->object.wall.thinnest_mm));
+    }
+    TRY(bytes_print(ctx, html, "<p>%d triangles, %.4g cm<sup>3</sup>.</p><main>\n",
+                    m->object.mesh.triangle_count, m->object.check.volume_mm3 / 1000));
+    TRY(append_thumbnail(ctx, &m->object.mesh, html));
+    TRY(bytes_print(ctx, html, "</main>"));
+done:
+    return status;
+}
+
+jali_status report_html(jali_context *ctx, const made *m, jali_bytes *html)
+{
+    jali_status status;
+    TRY(bytes_append(ctx, html, head, sizeof head - 1));
+    TRY(bytes_print(ctx, html, "<h1>"));
+    TRY(append_escaped(ctx, name_of(m->set[0].job ? m->set[0].job : m->set[0].operand), html));
+    TRY(bytes_print(ctx, html, "</h1>"));
+    TRY(append_object(ctx, m, html));
+    for (int32_t i = 0; i < m->count; i++) {
+        if (m->count > 1) {
+            TRY(bytes_print(ctx, html, "<h2>"));
+            TRY(append_escaped(ctx, name_of(m->set[i].operand), html));
+            TRY(bytes_print(ctx, html, "</h2>"));
+        }
+        TRY(append_picture(ctx, &m->set[i], &m->picture[i], &m->result[i], html));
+    }
+    TRY(bytes_print(ctx, html, "<p>jali %s</p></html>\n", jali_version()));
 done:
     return status;
 }

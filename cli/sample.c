@@ -18,9 +18,15 @@ done:
 jali_status run_list(jali_context *ctx, const settings *set)
 {
     int32_t count;
-    if (strcmp(set->operand, "samples") != 0)
-        return fail(ctx, JALI_BAD_VALUE, "there is no list of \"%.40s\"; there is samples", set->operand);
-    const jali_sample_info *info = jali_sample_list(&count);
-    for (int32_t i = 0; i < count; i++) printf("%-14s %s\n", info[i].name, info[i].what);
+    if (strcmp(set->operand, "samples") == 0) {
+        const jali_sample_info *info = jali_sample_list(&count);
+        for (int32_t i = 0; i < count; i++) printf("%-14s %s\n", info[i].name, info[i].what);
+    } else if (strcmp(set->operand, "surfaces") == 0) {
+        const jali_surface_info *info = jali_surface_list(&count);
+        for (int32_t i = 0; i < count; i++) printf("%-14s %s\n", info[i].name, info[i].what);
+    } else {
+        return fail(ctx, JALI_BAD_VALUE, "there is no list of \"%.40s\"; there are samples and surfaces",
+                    set->operand);
+    }
     return JALI_OK;
 }

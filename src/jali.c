@@ -65,6 +65,23 @@ static jali_options agreed(const jali_options *given)
     return opt;
 }
 
+// Copies side by side.
+static jali_status repeated(jali_context *ctx, const jali_picture *picture, int32_t count, jali_picture *row)
+{
+    jali_status status;
+    *row = (jali_picture){.width_px = picture->width_px * count, .height_px = picture->height_px};
+    if (picture->width_px > INT32_MAX / count)
+        return fail(ctx, JALI_LIMIT, "%d copies of a picture %d px wide are too many", count,
+                    picture->width_px);
+    TRY(ALLOCATE(ctx, row->grey, (size_t)row->width_px * (size_t)row->height_px));
+    for (int32_t y = 0; y < row->height_px; y++)
+        for (int32_t i = 0; i < count; i++)
+            memcpy(row->grey + (size_t)y * (size_t)row->width_px + (size_t)i * (size_t)picture->width_px,
+                   picture->grey + (size_t)y * (size_t)picture->width_px, (size_t)picture->width_px);
+done:
+    return status;
+}
+
 static jali_status black_and_white(jali_context *ctx, jali_picture *picture, const jali_options *opt,
                                    jali_result *r)
 {
@@ -146,14 +163,21 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
 {
     jali_status status;
     jali_bitmap drawing = {0};
+    jali_picture row = {0};
+    jali_place_options place = opt->place;
     double begun = now_seconds();
+    if (opt->repeat > 1) {
+        TRY(repeated(ctx, picture, opt->repeat, &row));
+        picture = &row;
+        place.width_mm *= opt->repeat;
+    }
     TRY(black_and_white(ctx, picture, opt, r));
     lap(r->seconds, JALI_STAGE_THRESHOLD, &begun);
     if (shell)
-        TRY(jali_place_on(ctx, picture, r->threshold, &opt->place, &shell->outer, &r->chart, patch, &drawing,
+        TRY(jali_place_on(ctx, picture, r->threshold, &place, &shell->outer, &r->chart, patch, &drawing,
                           &r->placed));
     else
-        TRY(jali_place(ctx, picture, r->threshold, &opt->place, &r->chart, &drawing));
+        TRY(jali_place(ctx, picture, r->threshold, &place, &r->chart, &drawing));
     lap(r->seconds, JALI_STAGE_PLACE, &begun);
     TRY(jali_optimise(ctx, &drawing, &r->chart, &opt->optimise, &r->optimised));
     lap(r->seconds, JALI_STAGE_OPTIMISE, &begun);
@@ -164,6 +188,7 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     lap(r->seconds, JALI_STAGE_TRACE, &begun);
 done:
     jali_bitmap_free(ctx, &drawing);
+    jali_picture_free(ctx, &row);
     return status;
 }
 
@@ -206,10 +231,14 @@ static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const ja
     jali_status status;
     jali_options opt = agreed(given);
     jali_patch patch = {0};
+    jali_place_options *place = &opt.place;
+    if (opt.repeat > 0 && place->width_mm == 0 && place->height_mm == 0) // all around, with a bar at the back
+        place->width_mm = shell->outer.around_mm > 0
+                              ? (shell->outer.around_mm - MAX(place->frame_mm, place->phi_s_mm)) / opt.repeat
+                              : jali_place_defaults().width_mm;
     TRY(image_stages(ctx, picture, &opt, shell, &patch, &r->contours, r));
     double begun = now_seconds();
-    if (opt.solid)
-        TRY(jali_pierce(ctx, &r->contours, &patch, MIN(opt.backing_mm / thickness_mm, 1), shell));
+    if (opt.solid) TRY(jali_pierce(ctx, &r->contours, &patch, MIN(opt.backing_mm / thickness_mm, 1), shell));
     lap(r->seconds, JALI_STAGE_CARVE, &begun);
 done:
     jali_patch_free(ctx, &patch);

@@ -112,7 +112,7 @@ TEST(usage_is_checked_before_anything_is_done)
     run("sample girih -o a.png --size 5", 2, "16 .. 32768 px");
     run("sample girih -o a.png --quiet=3", 2, "takes no value");
     run("sample lion -o a.png", 2, "there are girih");
-    run("list socks", 2, "there is samples");
+    run("list socks", 2, "there are samples and surfaces");
     CHECK(access("a.png", F_OK) != 0);
 }
 

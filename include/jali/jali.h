@@ -58,11 +58,12 @@ typedef struct jali_options {
     jali_optimise_options optimise; // its phi_e, phi_s, phi_v and paper count for place and predict as well
     jali_trace_options trace;
     jali_carve_options carve;
+    int32_t repeat;    // so many copies of the picture side by side, each of place's size, 1 .. 1000; 0 = 1
     double backing_mm; // on surfaces: a film at the inner skin that stays in the voids; 0 (default) = none
-    bool predict; // say what input, connected only and result come out as (default true)
-    bool recall;  // with the share of fine detail that survives (default true; slower)
-    bool solid;   // trace and carve too (default true); false = the image stages alone
-    bool check;   // check the mesh (default true)
+    bool predict;      // say what input, connected only and result come out as (default true)
+    bool recall;       // with the share of fine detail that survives (default true; slower)
+    bool solid;        // trace and carve too (default true); false = the image stages alone
+    bool check;        // check the mesh (default true)
 } jali_options;
 
 /// The defaults of all stages, with a frame of 2 mm.
@@ -74,7 +75,7 @@ typedef struct jali_result {
     jali_bitmap input;    // the picture in black and white, its own resolution
     int32_t input_pieces; // white components, 4-connected
     jali_chart chart;
-    jali_placed placed; // on a surface: where
+    jali_placed placed;       // on a surface: where
     jali_optimised optimised; // the mask and how it came about
     // What comes out of the printer, when predicted: of the input as it is, connected only, and of the
     // result.

@@ -23,23 +23,25 @@ typedef struct jali_camera {
     double up[3];        // zeros (default): z, or y when that is the direction of view
     double from[3];      // a perspective's eye; used when perspective is set
     bool perspective;    // default: parallel
+    double fov_deg;      // of a perspective: the picture's width as seen from the eye; 0 (default) = from the
+                         // picture's size in mm, which holds at the depth of its centre
 } jali_camera;
 
 typedef struct jali_place_options {
-    double width_mm, height_mm; // size of the picture; 0 = from the other one by the picture's shape. Both
-                                // may be given when they agree with it to 1 %. At least one is needed
-    double pixel_mm;            // working pixel; 0 (default) = the coarsest of which the smaller of phi_s and
-                                // phi_v holds at least 8 and phi_e / 2 a whole number
-    double phi_e_mm;            // what the printer adds to a solid edge's two sides together, >= 0 (0.1)
-    double phi_s_mm, phi_v_mm;  // narrowest solid and narrowest void that print, > 0 (0.3, 0.5)
-    double frame_mm;            // width of the solid frame, >= 0; 0 = the picture's border is the plate's
-    bool paper;                 // the paper's own grid: one working pixel an input pixel, no resampling
+    double width_mm,
+        height_mm;   // size of the picture; 0 = from the other one by the picture's shape. Both
+                     // may be given when they agree with it to 1 %. At least one is needed, or fov_deg
+    double pixel_mm; // working pixel; 0 (default) = the coarsest of which the smaller of phi_s and
+                     // phi_v holds at least 8 and phi_e / 2 a whole number
+    double phi_e_mm; // what the printer adds to a solid edge's two sides together, >= 0 (0.1)
+    double phi_s_mm, phi_v_mm; // narrowest solid and narrowest void that print, > 0 (0.3, 0.5)
+    double frame_mm;           // width of the solid frame, >= 0; 0 = the picture's border is the plate's
+    bool paper;                // the paper's own grid: one working pixel an input pixel, no resampling
     // On surfaces alone:
     jali_placing placing;
     jali_camera camera;
     bool at_given;   // the picture's centre goes to the place of the surface
     double at_mm[3]; // - projected: that lies behind this point; wrapped: nearest to it. Default: chosen
-    int32_t repeat;  // copies side by side, 1 .. 1000; 0 (default) = 1
 } jali_place_options;
 
 /// Width 70 mm, phi 0.1 / 0.3 / 0.5 mm, no frame.

@@ -24,29 +24,31 @@ JALI_API void jali_shell_free(jali_context *ctx, jali_shell *shell);
 
 typedef struct jali_shell_options {
     double thickness_mm; // of the wall; 2 (default), > 0
-    double least_mm;     // where the wall must be thinner, because it would fold or meet itself, at least this;
-                         // 0.3 (default), below it the surface is refused
+    double least_mm; // where the wall must be thinner, because it would fold or meet itself, at least this;
+                     // 0.3 (default), below it the surface is refused
 } jali_shell_options;
 
 JALI_API jali_shell_options jali_shell_defaults(void);
 
 /// How thick the wall came out.
 typedef struct jali_shell_report {
-    double thinnest_mm;     // as thickness_mm where nothing is in the way
+    double thinnest_mm; // as thickness_mm where nothing is in the way
     double thinnest_at_mm[3];
-    int32_t thinned;        // vertices with less than the thickness
+    int32_t thinned; // vertices with less than the thickness
 } jali_shell_report;
 
 /// Hollow out a surface: give it an inner skin at the wall's thickness along the normals. Where that would
 /// fold or meet a skin, the wall is thinner.
-///   inout  surface   moves into the shell (empty afterwards); its vertices are rounded to the shell's lattice
+///   inout  surface   moves into the shell (empty afterwards); its vertices are rounded to the shell's
+///   lattice
 ///          opt       NULL means the defaults
 ///   out    shell     neither skin meets itself or the other
 ///          report    may be NULL
 ///   fails  JALI_BAD_VALUE, JALI_BAD_INPUT, JALI_NO_RESULT (thinner than the least), JALI_LIMIT,
 ///          JALI_CANCELLED, JALI_NO_MEMORY
-JALI_API jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const jali_shell_options *opt,
-                                       jali_shell *shell, jali_shell_report *report);
+JALI_API jali_status jali_shell_create(jali_context *ctx, jali_surface *surface,
+                                       const jali_shell_options *opt, jali_shell *shell,
+                                       jali_shell_report *report);
 
 /// Which triangles of the outer skin a chart covers, and where on its lattice they lie. {0} is valid and
 /// empty.

@@ -10,8 +10,8 @@ static inline int32_t root_of(int32_t *parent, int32_t i)
     return i;
 }
 
-/// Make two sets one. The lower index is the root, whatever the order of the unions: a set is known by its first
-/// member.
+/// Make two sets one. The lower index is the root, whatever the order of the unions: a set is known by its
+/// first member.
 static inline void unite(int32_t *parent, int32_t i, int32_t j)
 {
     i = root_of(parent, i);

@@ -119,6 +119,11 @@ static jali_status project_picture(jali_context *ctx, placing_work *w)
             laid_free(ctx, &w->plane);
         }
     }
+    if (w->opt.camera.fov_deg > 0) { // now that the distance is known
+        double wide = 2 * w->view.distance * tan(w->opt.camera.fov_deg * acos(-1) / 360);
+        w->size_mm[1] *= wide / w->size_mm[0];
+        w->size_mm[0] = wide;
+    }
     memcpy(w->placed.direction, w->view.forward, sizeof w->placed.direction);
     TRY(lay_by_camera(ctx, w->surface, &w->view, &w->plane));
 done:
@@ -336,30 +341,12 @@ done:
     return status;
 }
 
-// Copies side by side.
-static jali_status repeated(jali_context *ctx, const jali_picture *picture, int32_t count, jali_picture *row)
-{
-    jali_status status;
-    *row = (jali_picture){.width_px = picture->width_px * count, .height_px = picture->height_px};
-    if (picture->width_px > INT32_MAX / count)
-        return fail(ctx, JALI_LIMIT, "%d copies of a picture %d px wide are too many", count,
-                    picture->width_px);
-    TRY(ALLOCATE(ctx, row->grey, (size_t)row->width_px * (size_t)row->height_px));
-    for (int32_t y = 0; y < row->height_px; y++)
-        for (int32_t i = 0; i < count; i++)
-            memcpy(row->grey + (size_t)y * (size_t)row->width_px + (size_t)i * (size_t)picture->width_px,
-                   picture->grey + (size_t)y * (size_t)picture->width_px, (size_t)picture->width_px);
-done:
-    return status;
-}
-
 jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_t threshold,
                           const jali_place_options *given, const jali_surface *surface, jali_chart *chart,
                           jali_patch *patch, jali_bitmap *drawing, jali_placed *placed)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    jali_picture row = {0};
     placing_work w = {.surface = surface, .opt = given ? *given : jali_place_defaults(), .chart = chart};
     *chart = (jali_chart){0};
     *patch = (jali_patch){0};
@@ -368,11 +355,9 @@ jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_
     if (w.opt.frame_mm <= 0) w.opt.frame_mm = w.opt.phi_s_mm; // the surroundings are solid in any case
     TRY(check_picture(ctx, picture, threshold, &w.opt));
     w.picture = picture;
-    if (w.opt.repeat > 1) {
-        TRY(repeated(ctx, picture, w.opt.repeat, &row));
-        w.picture = &row;
-        w.opt.width_mm *= w.opt.repeat;
-    }
+    if (w.opt.camera.perspective && w.opt.camera.fov_deg > 0)
+        w.opt.width_mm = 1000; // until the view is known
+    if (w.opt.camera.perspective && w.opt.camera.fov_deg > 0) w.opt.height_mm = 0;
     TRY(picture_size(ctx, w.picture, &w.opt, w.size_mm));
     TRY(lay_picture(ctx, &w));
     TRY(step(ctx, "place", 0.5));
@@ -383,7 +368,6 @@ jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_
     w.grown.patch = (jali_patch){0};
     if (placed) *placed = w.placed;
 done:
-    jali_picture_free(ctx, &row);
     jali_patch_free(ctx, &w.grown.patch);
     laid_free(ctx, &w.plane);
     arena_rewind(ctx, mark);
