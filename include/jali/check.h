@@ -15,12 +15,6 @@ typedef struct jali_check_options {
 
 JALI_API jali_check_options jali_check_defaults(void);
 
-/// How often a flaw was found, and where first (mm; zeros when it was not found).
-typedef struct jali_finding {
-    int64_t count;
-    double at_mm[3];
-} jali_finding;
-
 /// Vertices at exactly the same place count as one, so a triangle soup is judged by its geometry.
 typedef struct jali_check_report {
     bool closed;   // no open edge

@@ -2,7 +2,9 @@
 #ifndef JALI_SURFACE_H
 #define JALI_SURFACE_H
 
+#include <jali/bytes.h>
 #include <jali/mesh.h>
+#include <jali/model.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -20,8 +22,13 @@ typedef struct jali_surface {
 JALI_API void jali_surface_free(jali_context *ctx, jali_surface *surface);
 
 typedef struct jali_surface_options {
-    double tolerance_mm; // how far a curve may lie from its facets, along and around each, 0.0005 .. 10;
-                         // default 0.02
+    double tolerance_mm; // of shapes: how far a curve may lie from its facets, along and around each, 0.0005
+                         // .. 10; default 0.02
+    double unit_mm;      // of files: what a length of 1 in the file means; default 1. A 3MF has its own unit
+    double height_mm;    // of files: scale to this height instead; 0 (default) = do not
+    double turn_degrees; // of files: turn about the vertical, from the front to the right; default 0
+    int32_t up; // of files: which axis points up: 1, 2, 3 for x, y, z, negative for downwards; default 3
+    jali_model_options model; // of files: limits
 } jali_surface_options;
 
 JALI_API jali_surface_options jali_surface_defaults(void);
@@ -67,6 +74,61 @@ JALI_API const jali_surface_info *jali_surface_list(int32_t *count);
 ///   cost   O(triangles + rows^2)
 JALI_API jali_status jali_surface_make(jali_context *ctx, const char *description,
                                        const jali_surface_options *opt, jali_surface *surface);
+
+/// What was wrong with a mesh from a file. {0} is valid and empty; the one of a shape is empty.
+typedef struct jali_surface_report {
+    int32_t file_vertices, file_triangles; // as they were read
+    int32_t vertices, triangles, shells;   // as they are now
+    // Put right:
+    int32_t welded_vertices;           // at the place of an earlier one
+    jali_finding degenerate_triangles; // without area: dropped
+    jali_finding repeated_triangles;   // the three vertices of an earlier one, either way round: dropped
+    jali_finding turned_triangles;     // turned over, to agree with their neighbours and face outwards
+    // Left as it is:
+    jali_finding open_edges;        // in one triangle only: rims, holes, cracks
+    jali_finding crowded_edges;     // in three triangles or more
+    jali_finding crowded_vertices;  // where more than one fan of triangles meets
+    jali_finding misdirected_edges; // no way to turn triangles makes these agree (as on a Moebius strip)
+    jali_finding intersections;     // pairs of triangles that meet outside the vertex or edge they share
+    bool intersections_capped;      // there are more than that
+    int64_t faulty_triangles;
+    bool *faulty; // [triangles], touches a crowded edge or vertex or a misdirected edge, or meets another
+                  // triangle
+} jali_surface_report;
+
+JALI_API void jali_surface_report_free(jali_context *ctx, jali_surface_report *report);
+
+/// The report in plain sentences, a line each; appended.
+JALI_API jali_status jali_surface_sentences(jali_context *ctx, const jali_surface_report *report,
+                                            jali_bytes *text);
+
+/// Read a surface from a model file and mend what needs no guessing. What is wrong beyond that is reported,
+/// not refused.
+///
+/// The model is scaled and turned, its lowest point put on z = 0 and the middle of its box on the axis,
+/// rounded to the lattice of jali_surface_make, welded. With up = 2 the file's z becomes the front, with up =
+/// 3 its -y is. Triangles without area and second copies are dropped; neighbours are made to agree, shells to
+/// face outwards: closed ones by how many others enclose them (an odd number: a void), open ones by their
+/// volume as seen from the middle of their rim. Flat sheets stay as they are. The texture points of an OBJ
+/// become uv when every corner has one, scaled so that the areas of both are the same on the whole; around_mm
+/// is 0.
+///   in     path     the file, "-" is stdin
+///          opt      NULL means the defaults
+///   out    surface  free with jali_surface_free
+///          report   NULL is accepted; free with jali_surface_report_free
+///   fails  what jali_read_model says; JALI_BAD_VALUE (an option, or more than 10 m), JALI_BAD_INPUT (no
+///   triangle has an
+///          area)
+///   cost   that of jali_check
+JALI_API jali_status jali_surface_read(jali_context *ctx, const char *path, const jali_surface_options *opt,
+                                       jali_surface *surface, jali_surface_report *report);
+
+/// A surface as the command line describes it: a shape that jali_surface_make knows, or else a file, FILE or
+/// FILE:key=value,...: up=x|y|z|-x|-y|-z, unit=mm|cm|m|in, scale=FACTOR (on the unit), height=MM,
+/// turn=DEGREES.
+JALI_API jali_status jali_surface_open(jali_context *ctx, const char *description,
+                                       const jali_surface_options *opt, jali_surface *surface,
+                                       jali_surface_report *report);
 
 #ifdef __cplusplus
 }

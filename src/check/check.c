@@ -156,7 +156,7 @@ jali_status jali_check(jali_context *ctx, const jali_mesh *mesh, const jali_chec
     double *volume_mm3 = NULL;
     topology t = {0};
     lattice l = {0};
-    surface s = {0};
+    exact_surface s = {0};
     finding crossings = {0};
     *report = (jali_check_report){0};
 
@@ -175,18 +175,18 @@ jali_status jali_check(jali_context *ctx, const jali_mesh *mesh, const jali_chec
     TRY(lattice_create(ctx, mesh->vertex_count, (const double(*)[3])mesh->vertex, &l));
     r.unit_log2 = l.unit_log2;
     r.coordinates_exact = l.exact;
-    TRY(surface_create(ctx, &l, mesh->triangle_count, welded, &s));
+    TRY(exact_surface_create(ctx, &l, mesh->triangle_count, welded, &s));
     r.degenerate_triangles = found_at_triangle(mesh, &s.flat_triangles);
     shell_windings(&s, &t, winding);
     judge_shells(mesh, &t, volume_mm3, winding, &r);
 
     r.intersections_skipped = opt.skip_intersections;
-    if (!opt.skip_intersections) TRY(count_intersections(ctx, &s, &crossings, &r.intersections_capped));
+    if (!opt.skip_intersections) TRY(count_intersections(ctx, &s, NULL, &crossings, &r.intersections_capped));
     r.intersections = found_at_pair(mesh, &crossings);
     conclude(&r);
     *report = r;
 done:
-    surface_free(ctx, &s);
+    exact_surface_free(ctx, &s);
     lattice_free(ctx, &l);
     topology_free(ctx, &t);
     release(ctx, volume_mm3);

@@ -185,12 +185,12 @@ static box box_of_triangle(const lattice *l, const int32_t t[3])
     return b;
 }
 
-jali_status surface_create(jali_context *ctx, const lattice *l, int32_t triangle_count,
-                           const int32_t (*triangle)[3], surface *s)
+jali_status exact_surface_create(jali_context *ctx, const lattice *l, int32_t triangle_count,
+                                 const int32_t (*triangle)[3], exact_surface *s)
 {
     jali_status status;
     box *boxes = NULL;
-    *s = (surface){.l = l, .triangle = triangle};
+    *s = (exact_surface){.l = l, .triangle = triangle};
     TRY(ALLOCATE(ctx, s->face, triangle_count));
     TRY(ALLOCATE(ctx, boxes, triangle_count));
     for (int32_t t = 0; t < triangle_count; t++) {
@@ -207,22 +207,23 @@ jali_status surface_create(jali_context *ctx, const lattice *l, int32_t triangle
     TRY(box_tree_create(ctx, s->face_count, boxes, &s->tree));
 done:
     release(ctx, boxes);
-    if (status != JALI_OK) surface_free(ctx, s);
+    if (status != JALI_OK) exact_surface_free(ctx, s);
     return status;
 }
 
-void surface_free(jali_context *ctx, surface *s)
+void exact_surface_free(jali_context *ctx, exact_surface *s)
 {
     box_tree_free(ctx, &s->tree);
     release(ctx, s->face);
-    *s = (surface){0};
+    *s = (exact_surface){0};
 }
 
 typedef struct search {
     jali_context *ctx;
-    const surface *s;
+    const exact_surface *s;
     int32_t first_block; // of this batch
     finding *block;      // [blocks]
+    bool *met;           // [triangles] or NULL; several threads may set one
 } search;
 
 static void note_pair(finding *f, int32_t a, int32_t b)
@@ -238,7 +239,7 @@ static void note_pair(finding *f, int32_t a, int32_t b)
 static void search_block(void *shared, int32_t index)
 {
     search *job = shared;
-    const surface *s = job->s;
+    const exact_surface *s = job->s;
     int32_t block = job->first_block + index, first = block * BLOCK;
     int32_t end = first + MIN(BLOCK, s->face_count - first);
     finding *f = &job->block[block];
@@ -250,16 +251,21 @@ static void search_block(void *shared, int32_t index)
             int32_t c = s->face[s->tree.item[other]];
             if (!triangles_meet(s->l, s->triangle[a], s->triangle[c])) continue;
             note_pair(f, a, c);
+            if (job->met) {
+                __atomic_store_n(&job->met[a], true, __ATOMIC_RELAXED);
+                __atomic_store_n(&job->met[c], true, __ATOMIC_RELAXED);
+            }
             if (f->count > BLOCK_CAP) return;
         }
     }
 }
 
-jali_status count_intersections(jali_context *ctx, const surface *s, finding *found, bool *capped)
+jali_status count_intersections(jali_context *ctx, const exact_surface *s, bool *met, finding *found,
+                                bool *capped)
 {
     jali_status status = JALI_OK;
     int32_t blocks = s->face_count / BLOCK + (s->face_count % BLOCK != 0);
-    search job = {.ctx = ctx, .s = s};
+    search job = {.ctx = ctx, .s = s, .met = met};
     *found = (finding){0};
     *capped = false;
     TRY(ALLOCATE_CLEARED(ctx, job.block, blocks));

@@ -7,18 +7,18 @@
 #include "mesh/topology.h"
 
 /// Triangles in exact coordinates, with the box hierarchy over them. Triangles without area are left out.
-typedef struct surface {
+typedef struct exact_surface {
     const lattice *l;
     const int32_t (*triangle)[3]; // welded
     box_tree tree;                // its items number `face`
     int32_t face_count;
     int32_t *face;          // [face_count], the triangles that have an area, ascending
     finding flat_triangles; // without area: on one line or one point; a is a triangle
-} surface;
+} exact_surface;
 
-jali_status surface_create(jali_context *ctx, const lattice *l, int32_t triangle_count,
-                           const int32_t (*triangle)[3], surface *s);
-void surface_free(jali_context *ctx, surface *s);
+jali_status exact_surface_create(jali_context *ctx, const lattice *l, int32_t triangle_count,
+                                 const int32_t (*triangle)[3], exact_surface *s);
+void exact_surface_free(jali_context *ctx, exact_surface *s);
 
 /// Do two triangles, given by welded vertices and each with an area, meet anywhere but in the vertex or edge
 /// they share? Triangles with the same three vertices are left to topology's repeated_triangles and do not
@@ -26,10 +26,14 @@ void surface_free(jali_context *ctx, surface *s);
 bool triangles_meet(const lattice *l, const int32_t a[3], const int32_t b[3]);
 
 /// Count the pairs that do.
-///   out    found   a, b are triangles: of all pairs the one with the lowest a, then b
-///          capped  some block of 1024 triangles had more than a million pairs: the count is at least so
+///   out    met     [triangles], set for those of a pair; NULL is accepted. What was set before stays so
+///          found   a, b are triangles: of all pairs the one with the lowest a, then b
+///          capped  some block of 1024 triangles had more than a million pairs: the count is at least so, and
+///          not
+///                  every triangle of a pair may be set
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT
 ///   cost   O(pairs of touching boxes); the same for any number of threads
-jali_status count_intersections(jali_context *ctx, const surface *s, finding *found, bool *capped);
+jali_status count_intersections(jali_context *ctx, const exact_surface *s, bool *met, finding *found,
+                                bool *capped);
 
 #endif

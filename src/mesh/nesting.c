@@ -33,7 +33,7 @@ static int crossing(const lattice *l, const int32_t triangle[3], point p)
     return side_of(l->narrow, &n, t[0], p) == -up ? up : 0;
 }
 
-void shell_windings(const surface *s, const topology *t, int32_t *winding)
+void shell_windings(const exact_surface *s, const topology *t, int32_t *winding)
 {
     memset(winding, 0, (size_t)t->shell_count * sizeof *winding);
     if (t->shell_count < 2) return;

@@ -9,6 +9,6 @@
 ///   in     t        of the same triangles as s
 ///   out    winding  [t->shell_count], 0 for flawed shells
 ///   cost   one vertical ray a shell
-void shell_windings(const surface *s, const topology *t, int32_t *winding);
+void shell_windings(const exact_surface *s, const topology *t, int32_t *winding);
 
 #endif

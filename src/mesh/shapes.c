@@ -10,11 +10,6 @@
 
 static const double largest_mm = 10000, smallest_mm = 0.1;
 
-jali_surface_options jali_surface_defaults(void)
-{
-    return (jali_surface_options){.tolerance_mm = 0.02};
-}
-
 static jali_status take_shared(jali_context *ctx, spec *s, bool may_have_floor, turned *t)
 {
     static const char *const yes_or_no[] = {"no", "yes"};
@@ -209,30 +204,38 @@ const jali_surface_info *jali_surface_list(int32_t *count)
     return infos;
 }
 
+static const struct {
+    const char *name;
+    jali_status (*make)(jali_context *ctx, spec *s, turned *t, jali_surface *surface);
+} shapes[] = {{"plate", make_plate},
+              {"cylinder", make_cylinder},
+              {"cone", make_cone},
+              {"sphere", make_sphere},
+              {"vase", make_vase}};
+
+int32_t shape_named(const char *description)
+{
+    size_t length = strcspn(description, ":");
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
+        if (strlen(shapes[i].name) == length && memcmp(shapes[i].name, description, length) == 0)
+            return (int32_t)i;
+    return -1;
+}
+
 jali_status jali_surface_make(jali_context *ctx, const char *description, const jali_surface_options *given,
                               jali_surface *surface)
 {
-    static const struct {
-        const char *name;
-        jali_status (*make)(jali_context *ctx, spec *s, turned *t, jali_surface *surface);
-    } shapes[] = {{"plate", make_plate},
-                  {"cylinder", make_cylinder},
-                  {"cone", make_cone},
-                  {"sphere", make_sphere},
-                  {"vase", make_vase}};
     jali_status status = JALI_OK;
     jali_surface_options opt = given ? *given : jali_surface_defaults();
-    size_t length = strcspn(description, ":"), shape = 0, count = sizeof shapes / sizeof *shapes;
+    size_t length = strcspn(description, ":");
+    int32_t shape = shape_named(description);
     spec s;
     turned t = {.tolerance_mm = opt.tolerance_mm};
     *surface = (jali_surface){0};
     if (!(opt.tolerance_mm >= 0.0005 && opt.tolerance_mm <= 10))
         TRY(fail(ctx, JALI_BAD_VALUE, "the surface's tolerance must be 0.0005 .. 10 mm, not %g",
                  opt.tolerance_mm));
-    while (shape < count &&
-           (strlen(shapes[shape].name) != length || memcmp(shapes[shape].name, description, length) != 0))
-        shape++;
-    if (shape == count)
+    if (shape < 0)
         TRY(fail(ctx, JALI_BAD_VALUE,
                  "there is no surface \"%.*s\"; there are plate, cylinder, cone, sphere and vase",
                  (int)MIN(length, 40), description));

@@ -17,11 +17,12 @@ typedef struct side {
 
 typedef struct edge_pass {
     const int32_t (*triangle)[3];
-    int32_t *start; // [vertex_count + 1], the bucket of each vertex
-    side *side;     // [3 triangle_count]
-    int32_t *above; // [triangle_count], union-find over triangles
-    int32_t *fan;   // [3 triangle_count], union-find over corners
-    bool *flawed;   // [triangle_count]
+    int32_t *start;              // [vertex_count + 1], the bucket of each vertex
+    side *side;                  // [3 triangle_count]
+    int32_t *above;              // [triangle_count], union-find over triangles
+    int32_t *fan;                // [3 triangle_count], union-find over corners
+    bool *flawed;                // [triangle_count]
+    const topology_marks *marks; // or NULL
     topology *t;
 } edge_pass;
 
@@ -114,6 +115,8 @@ static void take_edge(edge_pass *p, int32_t low, const side *s, int32_t count)
         flawed = false;
     for (int32_t i = 0; i < count; i++) {
         p->flawed[s[i].half / 3] |= flawed;
+        if (p->marks)
+            p->marks->twin[s[i].half] = count == 1 ? TWIN_OPEN : count == 2 ? s[1 - i].half : TWIN_CROWDED;
         if (i == 0) continue;
         unite(p->above, s[i - 1].half / 3, s[i].half / 3);
         unite(p->fan, corner_at_low(p, &s[i - 1]), corner_at_low(p, &s[i]));
@@ -150,6 +153,7 @@ static void count_fans(edge_pass *p, int32_t vertex_count)
     for (int32_t v = 0; v < vertex_count; v++) {
         if (p->start[v] > 0) t->used_vertex_count++;
         if (p->start[v] > 1) note(&t->crowded_vertices, v, v);
+        if (p->marks) p->marks->crowded[v] = p->start[v] > 1;
     }
 }
 
@@ -171,8 +175,14 @@ static void number_shells(edge_pass *p)
 jali_status topology_create(jali_context *ctx, int32_t vertex_count, int32_t triangle_count,
                             const int32_t (*triangle)[3], topology *t)
 {
+    return topology_mark(ctx, vertex_count, triangle_count, triangle, NULL, t);
+}
+
+jali_status topology_mark(jali_context *ctx, int32_t vertex_count, int32_t triangle_count,
+                          const int32_t (*triangle)[3], const topology_marks *marks, topology *t)
+{
     jali_status status = JALI_OK;
-    edge_pass p = {.triangle = triangle, .t = t};
+    edge_pass p = {.triangle = triangle, .marks = marks, .t = t};
     *t = (topology){.triangle_count = triangle_count};
     TRY(ALLOCATE_CLEARED(ctx, p.start, (size_t)vertex_count + 1));
     TRY(ALLOCATE(ctx, p.side, 3 * (size_t)triangle_count));
@@ -181,7 +191,10 @@ jali_status topology_create(jali_context *ctx, int32_t vertex_count, int32_t tri
     TRY(ALLOCATE_CLEARED(ctx, p.flawed, triangle_count));
     TRY(ALLOCATE(ctx, t->shell, triangle_count));
     for (int32_t i = 0; i < triangle_count; i++) p.above[i] = i;
-    for (int32_t i = 0; i < 3 * triangle_count; i++) p.fan[i] = i;
+    for (int32_t i = 0; i < 3 * triangle_count; i++) {
+        p.fan[i] = i;
+        if (marks) marks->twin[i] = TWIN_NONE;
+    }
     fill_buckets(&p, vertex_count, triangle_count);
     for (int32_t v = 0; v < vertex_count; v++) {
         if (v % 65536 == 0) TRY(step(ctx, "check", 0.3 * v / vertex_count));

@@ -31,6 +31,23 @@ typedef struct topology {
 ///   cost   O(triangles) for vertices of bounded valence, else a sort of each vertex's edges
 jali_status topology_create(jali_context *ctx, int32_t vertex_count, int32_t triangle_count,
                             const int32_t (*triangle)[3], topology *t);
+
+/// What lies across each side: the side it shares its edge with, or why there is none.
+enum {
+    TWIN_OPEN = -1,
+    TWIN_CROWDED = -2,
+    TWIN_NONE = -3
+}; // no other; more than one; its triangle names a vertex twice
+
+typedef struct topology_marks {
+    int32_t *twin; // [3 triangle_count], side 3 t + k runs from corner k of triangle t to the next
+    bool *crowded; // [vertex_count], more than one fan of triangles meets there
+} topology_marks;
+
+/// The same, with marks; the arrays are the caller's.
+jali_status topology_mark(jali_context *ctx, int32_t vertex_count, int32_t triangle_count,
+                          const int32_t (*triangle)[3], const topology_marks *marks, topology *t);
+
 void topology_free(jali_context *ctx, topology *t);
 
 #endif

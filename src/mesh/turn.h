@@ -31,6 +31,9 @@ jali_status turn_profile(jali_context *ctx, const turned *t, jali_surface *surfa
 ///   fails  JALI_LIMIT, JALI_NO_MEMORY
 jali_status surface_allocate(jali_context *ctx, int64_t vertices, int64_t triangles, jali_surface *surface);
 
+/// Which shape a description names; -1: none of them.
+int32_t shape_named(const char *description);
+
 /// The profile's largest radius.
 double widest_mm(const profile *p);
 
