@@ -17,5 +17,9 @@ sed '/^<!-- tables -->$/q' "$page" >"$kept"
     printf '\n## Widths, by an independent judge\n\n'
     printf 'Exact distances, discs of phi_s and phi_v less one working pixel (`build/release/bench/widths`).\n\n'
     "$bench/widths" "$data"
+    printf '\n## Contours: how few points, how true\n\n'
+    printf 'Of the picture without its plate, the default way (`build/release/bench/contours`). Outline: the length of the\n'
+    printf 'smooth curve. Deviation: the largest distance of that curve, traced to one lattice unit, from the contour.\n\n'
+    "$bench/contours" "$data"
 } >"$kept.page"
 mv "$kept.page" "$page"

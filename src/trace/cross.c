@@ -93,7 +93,7 @@ static passage pass_crack(const double (*point)[2], int count, const crack *c, i
     while (*piece + 2 < count && (point[*piece + 1][along] - level) * sign < 0) ++*piece;
     const double *a = point[*piece], *b = point[*piece + 1];
     double run = (b[along] - a[along]) * sign, rise = b[across] - a[across];
-    if (run < 1e-3 * fabs(rise) || run < 1e-9) return (passage){0, 1e3};
+    if (run < 1e-3 * fabs(rise) || run < 1e-9) return (passage){0, 1}; // it turns back: no leave to stray
     double offset = a[across] + (level - a[along]) * sign / run * rise - (along ? c->x : c->y);
     // Left is +y of a crack in +x, -x of a crack in +y, and so on.
     return (passage){c->direction == 0 || c->direction == 3 ? offset : -offset,

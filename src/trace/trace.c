@@ -33,6 +33,10 @@
 
 enum { BATCH_CRACKS = 1 << 20, GROUP_CRACKS = 1 << 13 };
 
+// A chord's distance from the curve is known along the cracks, and square to the curve to first order only:
+// over 24 runs on real pictures it was up to 13 % more (bench/contours.c).
+static const double CHORD_SHARE = 0.85;
+
 jali_trace_options jali_trace_defaults(void)
 {
     return (jali_trace_options){.deviation_mm = 0.01};
@@ -166,7 +170,7 @@ jali_status jali_trace(jali_context *ctx, const jali_bitmap *solid, const jali_c
     TRY(check(ctx, solid, chart, &opt));
     TRY(follow_cracks(ctx, solid, chart->outside_solid, &paths));
     tracing t = {.paths = &paths, .unit = chart->pixel_units};
-    t.slack = (int32_t)MIN(MAX(opt.deviation_mm / chart->unit_mm, 1), chart->pixel_units);
+    t.slack = (int32_t)MIN(MAX(CHORD_SHARE * opt.deviation_mm / chart->unit_mm, 1), chart->pixel_units);
     TRY(ALLOCATE_CLEARED(ctx, contours->first, paths.path_count + 1));
     contours->contour_count = paths.path_count;
     TRY(ARENA(ctx, t.points, paths.path_count));
