@@ -66,15 +66,15 @@ static inline void judge_envelope(int32_t *line, int32_t n, int64_t stride, int3
 
 /// Squared doubled distances from each lattice point (x + shift / 2, y + shift / 2) to the nearest (x, y) of
 /// the set.
-///   in,out field   [h * w], 0 in the set, JUDGE_FAR elsewhere
-static inline void judge_distances(int32_t *field, int32_t w, int32_t h, int32_t shift)
+///   in,out squared   [h * w], 0 in the set, JUDGE_FAR elsewhere
+static inline void judge_distances(int32_t *squared, int32_t w, int32_t h, int32_t shift)
 {
     int32_t n = w > h ? w : h;
     int32_t *place = malloc(((size_t)n + 1) * sizeof *place);
     int64_t *value = malloc(((size_t)n + 1) * sizeof *value);
     double *edge = malloc(((size_t)n + 1) * sizeof *edge);
-    for (int32_t y = 0; y < h; y++) judge_envelope(field + (int64_t)y * w, w, 1, shift, place, value, edge);
-    for (int32_t x = 0; x < w; x++) judge_envelope(field + x, h, w, shift, place, value, edge);
+    for (int32_t y = 0; y < h; y++) judge_envelope(squared + (int64_t)y * w, w, 1, shift, place, value, edge);
+    for (int32_t x = 0; x < w; x++) judge_envelope(squared + x, h, w, shift, place, value, edge);
     free(place);
     free(value);
     free(edge);
@@ -100,19 +100,20 @@ static inline plain judge_uncovered(const plain *p, bool white, double diameter_
     double least = diameter_px * diameter_px,
            most = (diameter_px + 1) * (diameter_px + 1); // squared doubled distances
     plain bare = plain_create(p->w, p->h);
-    int32_t *field = malloc((size_t)n * sizeof *field);
+    int32_t *squared = malloc((size_t)n * sizeof *squared);
     for (int64_t i = 0; i < n; i++) bare.white[i] = p->white[i] == white;
     for (int32_t corner = 0; corner < 2; corner++) {
-        for (int64_t i = 0; i < n; i++) field[i] = p->white[i] == white ? JUDGE_FAR : 0;
-        judge_distances(field, p->w, p->h, corner); // at corners: the one to the lower right of pixel (x, y)
+        for (int64_t i = 0; i < n; i++) squared[i] = p->white[i] == white ? JUDGE_FAR : 0;
+        judge_distances(squared, p->w, p->h,
+                        corner); // at corners: the one to the lower right of pixel (x, y)
         // A corner is half a pixel aside from every centre: its distance from a straight edge is that much
         // shorter.
-        for (int64_t i = 0; i < n; i++) field[i] = (double)field[i] - corner > least ? 0 : JUDGE_FAR;
-        judge_distances(field, p->w, p->h, -corner);
+        for (int64_t i = 0; i < n; i++) squared[i] = (double)squared[i] - corner > least ? 0 : JUDGE_FAR;
+        judge_distances(squared, p->w, p->h, -corner);
         for (int64_t i = 0; i < n; i++)
-            if ((double)field[i] <= most) bare.white[i] = 0;
+            if ((double)squared[i] <= most) bare.white[i] = 0;
     }
-    free(field);
+    free(squared);
     return bare;
 }
 
@@ -221,24 +222,25 @@ typedef struct judge_rule {
     bool isolated;     // a detail on its own is type B
 } judge_rule;
 
-/// Judge one tone of a picture in endless surroundings.
-static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_solid, bool white,
-                                         judge_rule rule)
+/// How long `steps` steps from one pixel to another are.
+typedef double (*judge_length)(int32_t steps, const int32_t from[2], const int32_t to[2]);
+
+/// Sort the groups of uncovered pixels.
+///   in     p, bare   the picture and what of the tone is uncovered, both in a margin of `pad` px
+///          length    what a group's steps from one place to another are long, NULL: one each
+static inline judge_verdict judge_groups(const plain *p, const plain *bare, bool white, judge_rule rule,
+                                         int32_t pad, judge_length length)
 {
     judge_verdict v = {.at = {-1, -1}};
-    int32_t pad = (int32_t)rule.width_px + 3;
-    plain p = judge_padded(a, outside_solid, pad);
-    plain bare = rule.squares ? judge_uncovered_by_squares(&p, white, (int32_t)rule.width_px)
-                              : judge_uncovered(&p, white, rule.width_px);
-    size_t n = (size_t)p.w * (size_t)p.h + 1;
+    size_t n = (size_t)p->w * (size_t)p->h + 1;
     int32_t *label = malloc(n * sizeof *label);
-    judge_group g = {&p,
+    judge_group g = {p,
                      white,
                      label,
                      calloc(n, sizeof(int32_t)),
                      malloc(n * sizeof(int32_t)),
                      malloc(n * sizeof(int32_t))};
-    int32_t groups = plain_label(&bare, true, white ? 4 : 8, label), next = 0;
+    int32_t groups = plain_label(bare, true, white ? 4 : 8, label), next = 0;
     for (int32_t i = 0; next < groups; i++) {
         if (label[i] != next) continue; // not the group's first pixel
         next++;
@@ -246,13 +248,16 @@ static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_soli
         bool touches_own;
         int32_t end = judge_farthest(&g, i, &count, &steps);
         for (int32_t k = 0; k < count; k++) g.mark[g.queue[k]] = 0;
-        judge_farthest(&g, end, &count, &steps);
+        int32_t other = judge_farthest(&g, end, &count, &steps);
         int32_t parts = judge_ring_parts(&g, count, &touches_own);
         for (int32_t k = 0; k < count; k++) g.mark[g.queue[k]] = 0;
-        int32_t type = parts > 1 ? 0 : steps > rule.epsilon_px || (rule.isolated && !touches_own) ? 1 : 2;
+        int32_t from[2] = {end % p->w - pad, end / p->w - pad},
+                to[2] = {other % p->w - pad, other / p->w - pad};
+        double long_px = length ? length(steps, from, to) : steps;
+        int32_t type = parts > 1 ? 0 : long_px > rule.epsilon_px || (rule.isolated && !touches_own) ? 1 : 2;
         if (type < 2 && v.at[0] < 0) {
-            v.at[0] = i % p.w - pad;
-            v.at[1] = i / p.w - pad;
+            v.at[0] = i % p->w - pad;
+            v.at[1] = i / p->w - pad;
         }
         v.type[type]++;
         v.uncovered_px += count;
@@ -261,6 +266,18 @@ static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_soli
     free(g.mark);
     free(g.queue);
     free(g.ring);
+    return v;
+}
+
+/// Judge one tone of a picture in endless surroundings.
+static inline judge_verdict judge_widths(const jali_bitmap *a, bool outside_solid, bool white,
+                                         judge_rule rule)
+{
+    int32_t pad = (int32_t)rule.width_px + 3;
+    plain p = judge_padded(a, outside_solid, pad);
+    plain bare = rule.squares ? judge_uncovered_by_squares(&p, white, (int32_t)rule.width_px)
+                              : judge_uncovered(&p, white, rule.width_px);
+    judge_verdict v = judge_groups(&p, &bare, white, rule, pad, NULL);
     plain_free(&bare);
     plain_free(&p);
     return v;

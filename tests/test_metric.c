@@ -2,14 +2,14 @@
 #include "testing.h"
 #include "plain.h"
 #include "raster/field.h"
+#include "adapt/local.h"
+#include "judge_metric.h"
 
 #include <math.h>
 
 static const double FLAT[3] = {1, 0, 1};
 
 // --- Charts with a metric
-
-typedef void (*metric_of)(double x, double y, double g[3]);
 
 // A chart whose knots are exact at their places.
 static jali_chart curved_chart(int32_t width_px, int32_t height_px, int32_t step_px, metric_of metric)
@@ -307,6 +307,59 @@ TEST(operators_are_their_definition)
     }
 }
 
+// Windows over random places against the operators on the whole picture.
+TEST(windows_see_what_the_whole_picture_sees)
+{
+    enum { SIZE = 300, HALF = 40, ROWS = 2 * HALF + 24 };
+    uint64_t seed = 77;
+    jali_chart chart = curved_chart(SIZE, SIZE, 8, wavy_metric);
+    tiling t;
+    field f;
+    window_field local;
+    jali_bitmap a = random_bitmap(&seed, SIZE, SIZE, 98), sparse = random_bitmap(&seed, SIZE, SIZE, 1), fits,
+                square, all;
+    CHECK_OK(tiling_create(ctx, &chart, SIZE, SIZE, 0, 0, 1, &t));
+    CHECK_OK(field_of_discs(ctx, &t, 11, 0, false, &f));
+    CHECK_OK(window_field_create(ctx, &f, &local));
+    CHECK_OK(jali_bitmap_create(ctx, SIZE, SIZE, &fits));
+    CHECK_OK(jali_bitmap_create(ctx, SIZE, SIZE, &all));
+    CHECK_OK(field_erode(ctx, &a, &f, true, &fits));
+    for (int32_t round = 0; round < 60; round++) {
+        int32_t x0 = (int32_t)(next_random(&seed) % (SIZE - 140)),
+                y0 = (int32_t)(next_random(&seed) % (SIZE - ROWS));
+        int32_t left = x0 + 64 - HALF, top = y0 + ROWS / 2 - HALF;
+        window w, got;
+        window_read(&a, x0, y0, ROWS, &w);
+        local_erode(&local, &w, x0, y0, ROWS, HALF, &got);
+        CHECK_OK(jali_bitmap_create(ctx, SIZE, SIZE, &square));
+        for (int32_t y = top; y < top + 2 * HALF; y++) {
+            paint_run(&square, y, left, left + 2 * HALF, true);
+            for (int32_t x = left; x < left + 2 * HALF; x++) {
+                uint64_t word = x - x0 < 64 ? got.left[y - y0] : got.right[y - y0];
+                CHECK((word >> ((x - x0) & 63) & 1) == jali_bitmap_get(&fits, x, y));
+            }
+        }
+        combine(ctx, RULE_AND, &sparse, &square, &square);
+        CHECK_OK(field_dilate(ctx, &square, &f, false, &all));
+        window_read(&sparse, x0, y0, ROWS, &w);
+        local_dilate(&local, &w, x0, y0, ROWS, HALF, &got);
+        for (int32_t y = y0; y < y0 + ROWS; y++)
+            for (int32_t x = x0; x < x0 + WINDOW_COLUMNS; x++) {
+                uint64_t word = x - x0 < 64 ? got.left[y - y0] : got.right[y - y0];
+                CHECK((word >> ((x - x0) & 63) & 1) == jali_bitmap_get(&all, x, y));
+            }
+        jali_bitmap_free(ctx, &square);
+    }
+    window_field_free(ctx, &local);
+    field_free(ctx, &f);
+    tiling_free(ctx, &t);
+    free(chart.metric);
+    jali_bitmap_free(ctx, &a);
+    jali_bitmap_free(ctx, &sparse);
+    jali_bitmap_free(ctx, &fits);
+    jali_bitmap_free(ctx, &all);
+}
+
 TEST(wide_patches_cross_words)
 {
     jali_chart chart = curved_chart(400, 300, 8, wavy_metric);
@@ -400,6 +453,7 @@ int main(void)
         cmocka_unit_test(a_metric_that_is_the_identity_leaves_no_slack),
         cmocka_unit_test(bad_metrics_are_a_sentence),
         cmocka_unit_test(operators_are_their_definition),
+        cmocka_unit_test(windows_see_what_the_whole_picture_sees),
         cmocka_unit_test(wide_patches_cross_words),
         cmocka_unit_test(operators_give_the_same_for_any_number_of_threads),
         cmocka_unit_test(every_allocation_refused_once),
