@@ -343,8 +343,8 @@ static void print_usage(void)
 
 int main(int argc, char **argv)
 {
-    mallopt(M_MMAP_THRESHOLD, 1 << 28); // as the command line does
-    mallopt(M_TRIM_THRESHOLD, 1 << 28);
+    mallopt(M_MMAP_THRESHOLD, 1 << 30); // as the command line does
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
     static char samples[] = "girih,lettering,halftone";
     settings set = {.context = jali_context_defaults(),
                     .runs = 5,

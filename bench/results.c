@@ -64,8 +64,8 @@ static double image_seconds(const jali_result *r)
 
 int main(int argc, char **argv)
 {
-    mallopt(M_MMAP_THRESHOLD, 1 << 28); // as the command line does
-    mallopt(M_TRIM_THRESHOLD, 1 << 28);
+    mallopt(M_MMAP_THRESHOLD, 1 << 30); // as the command line does
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
     const char *folder = "../shared/data/images", *only = NULL;
     jali_context_options copt = jali_context_defaults();
     copt.threads = 1;

@@ -83,8 +83,8 @@ int main(int argc, char **argv)
 {
     // Bitmaps of some MB come and go: keep their pages instead of asking the kernel for cleared ones each
     // time.
-    mallopt(M_MMAP_THRESHOLD, 1 << 28);
-    mallopt(M_TRIM_THRESHOLD, 1 << 28);
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
     char sentence[SENTENCE_BYTES];
     settings set = default_settings();
     if (argc < 2) return refuse("what shall be done? \"jali --help\" lists what there is");
