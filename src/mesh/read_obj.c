@@ -49,7 +49,7 @@ static jali_status read_face(jali_context *ctx, gathering *g, text *in)
     jali_status status = JALI_OK;
     int64_t line = in->line, reference, skipped;
     while (take_whole(in, &reference)) {
-        int32_t vertex, texture = -1;
+        int32_t vertex = 0, texture = -1;
         TRY(resolve(ctx, g->file, in, "vertex", reference, g->vertex_count, &vertex));
         if (take_slash(in)) {
             if (in->at < in->end && *in->at != '/' && take_whole(in, &reference))
