@@ -44,8 +44,9 @@ typedef struct jali_shell_report {
 ///          opt       NULL means the defaults
 ///   out    shell     neither skin meets itself or the other
 ///          report    may be NULL
-///   fails  JALI_BAD_VALUE, JALI_BAD_INPUT, JALI_NO_RESULT (thinner than the least), JALI_LIMIT,
-///          JALI_CANCELLED, JALI_NO_MEMORY
+///   fails  JALI_BAD_VALUE, JALI_NO_RESULT (the least wall folds or meets a skin as well: where is in the
+///   message),
+///          JALI_LIMIT, JALI_CANCELLED, JALI_NO_MEMORY
 JALI_API jali_status jali_shell_create(jali_context *ctx, jali_surface *surface,
                                        const jali_shell_options *opt, jali_shell *shell,
                                        jali_shell_report *report);

@@ -1,9 +1,9 @@
-// From a surface to a shell: the inner skin.
+// From a surface to a shell: the inner skin (mesh/offset) and what it came to.
 //
-// Checked: tests/test_shell.c.
+// Checked: tests/test_shell.c, tests/test_offset.c.
 #include <jali/shell.h>
 
-#include "base/base.h"
+#include "mesh/offset.h"
 
 #include <math.h>
 
@@ -24,33 +24,42 @@ static double finest_unit(const jali_mesh *mesh, double beyond_mm)
     return unit;
 }
 
+static jali_status refuse_wall(jali_context *ctx, const jali_mesh *mesh, const jali_shell_options *opt,
+                               const offset_report *found)
+{
+    double at[3] = {0};
+    for (int c = 0; c < 3 && found->unsolved >= 0; c++)
+        for (int k = 0; k < 3; k++) at[k] += mesh->vertex[mesh->triangle[found->unsolved][c]][k] / 3;
+    return fail(
+        ctx, JALI_NO_RESULT,
+        "a wall of %g mm, the thinnest allowed, folds or meets itself at %d triangles, as at (%.2f, %.2f, "
+        "%.2f) mm; allow a thinner one, or give a larger or smoother surface",
+        opt->least_mm, found->unsolved_triangles, at[0], at[1], at[2]);
+}
+
 jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const jali_shell_options *given,
                               jali_shell *shell, jali_shell_report *report)
 {
     jali_status status;
     jali_shell_options opt = given ? *given : jali_shell_defaults();
     jali_mesh *mesh = &surface->mesh;
+    offset_report found;
     *shell = (jali_shell){.unit_mm = finest_unit(mesh, opt.thickness_mm)};
     if (report) *report = (jali_shell_report){.thinnest_mm = opt.thickness_mm};
-    TRY(ALLOCATE_CLEARED(ctx, shell->inner, mesh->vertex_count + 1));
-    for (int32_t t = 0; t < mesh->triangle_count; t++) {
-        const int32_t *c = mesh->triangle[t];
-        double u[3], v[3];
-        for (int k = 0; k < 3; k++) {
-            u[k] = mesh->vertex[c[1]][k] - mesh->vertex[c[0]][k];
-            v[k] = mesh->vertex[c[2]][k] - mesh->vertex[c[0]][k];
-        }
-        for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 3; k++)
-                shell->inner[c[i]][k] += u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-    }
-    for (int32_t v = 0; v < mesh->vertex_count; v++) {
-        double *n = shell->inner[v], length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        for (int k = 0; k < 3; k++) {
-            double inner = mesh->vertex[v][k] - opt.thickness_mm * n[k] / length;
-            n[k] = rint(inner / shell->unit_mm) * shell->unit_mm;
+    if (!(opt.thickness_mm > 0) || !(opt.least_mm > 0) || !isfinite(opt.thickness_mm))
+        TRY(fail(ctx, JALI_BAD_VALUE, "the wall's thickness and its least must be above 0 mm, not %g and %g",
+                 opt.thickness_mm, opt.least_mm));
+    TRY(ALLOCATE(ctx, shell->inner, (size_t)mesh->vertex_count + 1));
+    for (int32_t v = 0; v < mesh->vertex_count; v++)
+        for (int k = 0; k < 3; k++)
             mesh->vertex[v][k] = rint(mesh->vertex[v][k] / shell->unit_mm) * shell->unit_mm;
-        }
+    const offset_options wall = {opt.thickness_mm, MIN(opt.least_mm, opt.thickness_mm), shell->unit_mm};
+    TRY(offset_inward(ctx, mesh, &wall, shell->inner, NULL, &found));
+    if (found.unsolved_triangles > 0) TRY(refuse_wall(ctx, mesh, &opt, &found));
+    if (report && found.thinnest >= 0) {
+        report->thinned = found.thinned;
+        report->thinnest_mm = MIN(found.thinnest_mm, opt.thickness_mm);
+        memcpy(report->thinnest_at_mm, mesh->vertex[found.thinnest], sizeof report->thinnest_at_mm);
     }
     shell->outer = *surface;
     *surface = (jali_surface){0};
