@@ -104,14 +104,17 @@ static inline void put(writer *w, int32_t a, int32_t b, int32_t c)
     w->count++;
 }
 
-// The wall on the edge from a to b, solid on its left: a strip between the two columns.
-static void put_wall(writer *w, const columns *c, int32_t a, int32_t b, interval part)
+// The wall on the edge from a to b, solid on its left: a strip between the two columns. Where both go up by
+// the same, `leans` says which goes first.
+static void put_wall(writer *w, const columns *c, int32_t a, int32_t b, interval part, bool leans)
 {
     int32_t i = rank_of(c, a, part.bottom), i_end = rank_of(c, a, part.top);
     int32_t j = rank_of(c, b, part.bottom), j_end = rank_of(c, b, part.top);
     const int32_t *level_a = c->level + c->first[a], *level_b = c->level + c->first[b];
     while (i < i_end || j < j_end) {
-        bool up_a = j == j_end || (i < i_end && level_a[i + 1] <= level_b[j + 1]);
+        bool up_a =
+            j == j_end ||
+            (i < i_end && (leans ? level_a[i + 1] < level_b[j + 1] : level_a[i + 1] <= level_b[j + 1]));
         int32_t from = c->vertex[a] + i, across = c->vertex[b] + j;
         if (up_a)
             put(w, from, across, c->vertex[a] + ++i);
@@ -136,7 +139,8 @@ static void put_cell(writer *w, const columns *c, const cells *plane, const inte
         interval part[2];
         int parts = free_parts(mine, solid[plane->beside[s] >> 2], part);
         for (int i = 0; i < parts; i++)
-            put_wall(w, c, plane->corner[next_side(s)], plane->corner[last_side(s)], part[i]);
+            put_wall(w, c, plane->corner[next_side(s)], plane->corner[last_side(s)], part[i],
+                     plane->leans && plane->leans[s]);
     }
 }
 
@@ -242,7 +246,7 @@ jali_status build_plate(jali_context *ctx, const triangulation *plane, const int
 {
     jali_status status;
     prisms built = {0};
-    cells all = {plane->point_count, plane->triangle_count, plane->corner, plane->beside, plane->star};
+    cells all = {plane->point_count, plane->triangle_count, plane->corner, plane->beside, plane->star, NULL};
     *mesh = (jali_mesh){0};
     TRY(build_prisms(ctx, &all, solid, &built));
     if (built.contact >= 0) {

@@ -1,7 +1,9 @@
 // The solid of a shell: prisms between the two skins.
 //
-// Limits:  walls and skins are flat between vertices, so a wall that stands askew is two triangles off the
-//          ruled surface by a quarter of its twist.
+// Limits:  walls and skins are flat between vertices: a wall that stands askew is two triangles, which leave
+// the
+//          ruled surface by a quarter of its twist, always into the solid, so that walls with a narrow void
+//          between them cannot meet.
 // Checked: tests/test_shell.c.
 #include <jali/shell.h>
 
@@ -58,6 +60,23 @@ static void place_between(const jali_shell *shell, int32_t vertex, int32_t level
     }
 }
 
+// On which of its two diagonals does the wall over the side from a to b give way to the solid on its left?
+static bool leans(const jali_shell *shell, int32_t a, int32_t b)
+{
+    const double *low_a = shell->inner[a], *low_b = shell->inner[b];
+    const double *high_a = shell->outer.mesh.vertex[a], *high_b = shell->outer.mesh.vertex[b];
+    double along[3], up[3], right[3], between = 0;
+    for (int k = 0; k < 3; k++) {
+        along[k] = low_b[k] + high_b[k] - low_a[k] - high_a[k];
+        up[k] = high_a[k] + high_b[k] - low_a[k] - low_b[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        right[k] = along[(k + 1) % 3] * up[(k + 2) % 3] - along[(k + 2) % 3] * up[(k + 1) % 3];
+        between += right[k] * ((low_b[k] + high_a[k]) - (low_a[k] + high_b[k]));
+    }
+    return between > 0;
+}
+
 jali_status jali_shell_solid(jali_context *ctx, const jali_shell *shell, jali_mesh *mesh)
 {
     jali_status status;
@@ -66,6 +85,7 @@ jali_status jali_shell_solid(jali_context *ctx, const jali_shell *shell, jali_me
     sides linked = {0};
     prisms built = {0};
     interval *solid;
+    uint8_t *lean;
     int32_t stuck;
     *mesh = (jali_mesh){0};
     TRY(sides_create(ctx, outer->vertex_count, outer->triangle_count, (const int32_t(*)[3])outer->triangle,
@@ -74,7 +94,10 @@ jali_status jali_shell_solid(jali_context *ctx, const jali_shell *shell, jali_me
     if (stuck >= 0) TRY(refuse_vertex(ctx, shell, stuck, "the surface is not manifold"));
     TRY(ARENA(ctx, solid, linked.cell_count));
     fill_intervals(shell, linked.cell_count, solid);
-    cells all = {outer->vertex_count, linked.cell_count, linked.corner, linked.beside, linked.star};
+    TRY(ARENA(ctx, lean, 4 * (size_t)linked.cell_count + 1));
+    for (int32_t s = 0; s < 4 * outer->triangle_count; s++)
+        lean[s] = (s & 3) != 3 && leans(shell, linked.corner[next_side(s)], linked.corner[last_side(s)]);
+    cells all = {outer->vertex_count, linked.cell_count, linked.corner, linked.beside, linked.star, lean};
     TRY(build_prisms(ctx, &all, solid, &built));
     if (built.contact >= 0)
         TRY(refuse_vertex(ctx, shell, built.contact,

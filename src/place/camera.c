@@ -3,7 +3,7 @@
 // Source:  Binary Image Carving for 3D Printing, section 3: the picture is carved along the rays of an
 // inverse
 //          perspective, so that it looks right from the eye.
-// Checked: tests/test_surface.c.
+// Checked: tests/test_place_on.c.
 #include "place/lay.h"
 
 #include <math.h>

@@ -48,12 +48,13 @@ jali_status view_create(jali_context *ctx, const double low[2], const double hig
                         view *v);
 
 /// Find the view and the centre of a projected picture that has no place of its own: the largest room in
-/// which the surface is smooth and turned to the viewer.
-///   in     half_mm   of the picture with its frame
+/// which the surface is smooth and turned to the viewer. It depends on the picture's shape, not on its size.
+///   in     half_mm   of the picture
+///          wanted    the front is taken when the picture, scaled so, has room there
 ///   out    c         aimed
 ///          room      the largest scale of the picture that fits there
 jali_status find_view(jali_context *ctx, const jali_surface *surface, const jali_place_options *opt,
-                      const double half_mm[2], camera *c, double *room);
+                      const double half_mm[2], double wanted, camera *c, double *room);
 
 /// The 2 x 2 metric of a face in its plane, y up: first fundamental form of the map from plane to surface.
 bool face_metric(const laid *l, int32_t face, double g[3]);

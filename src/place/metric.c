@@ -2,7 +2,7 @@
 //
 // How:     faces are drawn at 4 x 4 samples a knot; a knot is the mean of its samples. Knots that no face
 //          reaches (the margin beyond the surface) take after their neighbours.
-// Checked: tests/test_surface.c: cylinder, sphere and cone against their formulas.
+// Checked: tests/test_place_on.c: cylinder, sphere and cone against their formulas.
 #include "place/patch.h"
 
 #include <math.h>

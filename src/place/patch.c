@@ -1,6 +1,6 @@
 // Grow the patch of faces under a picture, and measure what it covers.
 //
-// Checked: tests/test_surface.c.
+// Checked: tests/test_place_on.c.
 #include "place/patch.h"
 
 #include "plane/exact.h"
@@ -46,6 +46,9 @@ static bool corners_on_lattice(const laid *l, const jali_chart *chart, int32_t f
             low[i] = MIN(low[i], exact[k][i]);
             high[i] = MAX(high[i], exact[k][i]);
         }
+    // Of a surface that closes, the half turn on each side of the picture's middle.
+    double middle = (exact[0][0] + exact[1][0] + exact[2][0]) / 3 - size[0] / 2;
+    if (l->around_mm > 0 && fabs(middle) > l->around_mm * per_mm / 2) return false;
     if (MIN(high[0], high[1]) < -around_grid || low[0] > size[0] + around_grid ||
         low[1] > size[1] + around_grid)
         return false;

@@ -3,7 +3,7 @@
 // Source:  Binary Image Carving for 3D Printing, section 3: the picture is placed by an inverse perspective,
 //          and a surface that hides part of itself inside the picture's window is refused.
 // Limits:  the lattice of a surface's chart is 1/64 of a working pixel; faces may reach 2^24 units.
-// Checked: tests/test_surface.c.
+// Checked: tests/test_place_on.c.
 #include <jali/place.h>
 
 #include "place/grid.h"
@@ -98,12 +98,12 @@ static void middle_of_box(const jali_mesh *mesh, double middle[3])
 static jali_status project_picture(jali_context *ctx, placing_work *w)
 {
     jali_status status;
-    double half[2] = {w->size_mm[0] / 2 + w->ring_mm[0], w->size_mm[1] / 2 + w->ring_mm[1]}, room = 1;
-    double centre[3];
+    double room, centre[3], half[2] = {w->size_mm[0] / 2, w->size_mm[1] / 2};
+    double wanted = 1 + MAX(w->ring_mm[0], w->ring_mm[1]) / MIN(half[0], half[1]);
     memcpy(centre, w->opt.at_mm, sizeof centre);
     if (!w->opt.at_given) middle_of_box(&w->surface->mesh, centre);
     if (!w->opt.at_given && !w->opt.camera.perspective) {
-        TRY(find_view(ctx, w->surface, &w->opt, half, &w->view, &room));
+        TRY(find_view(ctx, w->surface, &w->opt, half, wanted, &w->view, &room));
     } else {
         jali_camera look = w->opt.camera;
         if (!look.perspective && look.direction[0] == 0 && look.direction[1] == 0 && look.direction[2] == 0)
@@ -352,7 +352,11 @@ jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_
     *patch = (jali_patch){0};
     *drawing = (jali_bitmap){0};
     TRY(step(ctx, "place", 0));
-    if (w.opt.frame_mm <= 0) w.opt.frame_mm = w.opt.phi_s_mm; // the surroundings are solid in any case
+    if (w.opt.frame_mm <= 0) w.opt.frame_mm = w.opt.phi_s_mm;   // the surroundings are solid in any case
+    if (w.opt.camera.perspective && w.opt.camera.fov_deg > 0) { // the size follows when the view is known
+        w.opt.width_mm = 1000;
+        w.opt.height_mm = 0;
+    }
     TRY(check_picture(ctx, picture, threshold, &w.opt));
     w.picture = picture;
     if (w.opt.camera.perspective && w.opt.camera.fov_deg > 0)

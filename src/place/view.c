@@ -1,6 +1,6 @@
 // What of the surface is seen at samples of the picture's plane, and the view with the most room.
 //
-// Checked: tests/test_surface.c.
+// Checked: tests/test_place_on.c.
 #include "place/lay.h"
 
 #include <math.h>
@@ -159,7 +159,7 @@ static bool no_direction(const double d[3])
 }
 
 jali_status find_view(jali_context *ctx, const jali_surface *surface, const jali_place_options *opt,
-                      const double half_mm[2], camera *c, double *room)
+                      const double half_mm[2], double wanted, camera *c, double *room)
 {
     jali_status status = JALI_OK;
     enum { SIDES = 8 };
@@ -167,8 +167,8 @@ jali_status find_view(jali_context *ctx, const jali_surface *surface, const jali
     bool given = !no_direction(look.direction);
     camera best = {0};
     *room = -1;
-    for (int i = 0; i < (given ? 1 : SIDES) && *room < 1;
-         i++) { // the front, then in turn right and left of it
+    for (int i = 0; i < (given ? 1 : SIDES) && (i != 1 || *room < wanted); i++) {
+        // The front when it has room, else the side that has most, near ones first.
         double turn = (i % 2 ? -1 : 1) * ((i + 1) / 2) * 2 * acos(-1) / SIDES, here = 0;
         if (!given)
             memcpy(look.direction, (double[3]){rint(1e9 * sin(turn)) / 1e9, rint(1e9 * cos(turn)) / 1e9, 0},
