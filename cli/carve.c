@@ -156,16 +156,36 @@ static jali_status make_plate(jali_context *ctx, made *m)
     return JALI_OK;
 }
 
+// What was wrong with a model, and what was put right.
+static jali_status tell_surface(jali_context *ctx, const settings *set, const jali_surface_report *report)
+{
+    jali_bytes text = {0};
+    jali_status status = jali_surface_sentences(ctx, report, &text);
+    if (status == JALI_OK && text.size > 1) say(set, "%.*s", (int)text.size - 1, (const char *)text.data);
+    jali_bytes_free(ctx, &text);
+    return status;
+}
+
 static jali_status make_surface(jali_context *ctx, const settings *set, made *m)
 {
     jali_status status;
     jali_surface surface = {0};
+    jali_surface_report report = {0};
     jali_options *opt = NULL;
     TRY(ALLOCATE(ctx, opt, m->count));
-    for (int32_t i = 0; i < m->count; i++) opt[i] = m->set[i].make;
-    TRY(jali_surface_make(ctx, set->surface, NULL, &surface));
+    TRY(jali_surface_open(ctx, set->surface, NULL, &surface, &report));
+    surface.faulty = report.faulty;
+    report.faulty = NULL;
+    TRY(tell_surface(ctx, set, &report));
+    for (int32_t i = 0; i < m->count; i++) {
+        opt[i] = m->set[i].make;
+        if (opt[i].place.placing == JALI_PLACE_AUTO &&
+            report.file_triangles > 0) // its texture is no unrolling
+            opt[i].place.placing = JALI_PLACE_PROJECT;
+    }
     TRY(jali_make_on(ctx, &surface, &set->wall, m->picture, opt, m->count, m->result, &m->object));
 done:
+    jali_surface_report_free(ctx, &report);
     jali_surface_free(ctx, &surface);
     release(ctx, opt);
     return status;

@@ -99,7 +99,7 @@ static const option options[] = {
     {"surface", "SHAPE|FILE", TEXT, GROUP_SURFACE, FIELD(surface), 0, 0, 0,
      "what to carve: a shape such as vase:h=120 (\"jali list surfaces\") or a model file (a flat plate)"},
     {"place", "auto|project|wrap", PLACING, GROUP_SURFACE, 0, 0, 0, 0,
-     "as seen by a camera, or on the unrolled surface (auto: wrap where it comes unrolled)"},
+     "as seen by a camera, or on the unrolled surface (auto: shapes are wrapped, models are not)"},
     {"at", "X,Y,Z", AT, GROUP_SURFACE, 0, 0, 0, 0,
      "the picture's centre lies behind this point, or next to it when wrapped (found)"},
     {"dir", "X,Y,Z", VECTOR, GROUP_SURFACE, FIELD(make.place.camera.direction), 0, 0, 0,

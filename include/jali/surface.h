@@ -17,6 +17,8 @@ typedef struct jali_surface {
                         // v up; NULL: it cannot be unrolled without a cut of its own. Triangles that are not
                         // part of what is unrolled (floors) have NaN
     double around_mm;   // u and u + around_mm are the same place; 0 = the unrolled surface does not close
+    bool *faulty; // [mesh.triangle_count] no picture may lie there; NULL: there is no such triangle. Move
+                  // a report's here
 } jali_surface;
 
 JALI_API void jali_surface_free(jali_context *ctx, jali_surface *surface);

@@ -6,7 +6,7 @@
 //          surface is lifted along that edge, one inside a triangle by its barycentric coordinates there
 //          (perspective ones when the chart is a perspective), on the outer and the inner skin alike: both
 //          skins keep their planes.
-// Limits:  points and edges move by less than a lattice unit of the chart (1/64 of a working pixel). Where
+// Limits:  points and edges move by less than a lattice unit of the chart (1/256 of a working pixel). Where
 // two
 //          edges of the surface run closer than that, the sliver between them is lost.
 // Checked: tests/test_shell.c.
@@ -289,6 +289,7 @@ static jali_status room_for(jali_context *ctx, const piercing *p, double backing
     TRY(ALLOCATE(ctx, out->outer.mesh.vertex, vertices + 1));
     TRY(ALLOCATE(ctx, out->inner, vertices + 1));
     if (p->shell->outer.uv) TRY(ALLOCATE(ctx, out->outer.uv, triangles + 1));
+    if (p->shell->outer.faulty) TRY(ALLOCATE_CLEARED(ctx, out->outer.faulty, triangles + 1));
     if (p->shell->solid || backing > 0) TRY(ALLOCATE(ctx, out->solid, triangles + 1));
     memcpy(out->outer.mesh.vertex, old->vertex, (size_t)old->vertex_count * sizeof *old->vertex);
     memcpy(out->inner, p->shell->inner, (size_t)old->vertex_count * sizeof *out->inner);
@@ -313,6 +314,7 @@ static void copy_untouched(const piercing *p, const uint8_t *covered, jali_shell
         int32_t into = out->outer.mesh.triangle_count++;
         memcpy(out->outer.mesh.triangle[into], old->outer.mesh.triangle[t], sizeof *old->outer.mesh.triangle);
         if (out->outer.uv) memcpy(out->outer.uv[into], old->outer.uv[t], sizeof *old->outer.uv);
+        if (out->outer.faulty) out->outer.faulty[into] = old->outer.faulty[t];
         copy_solid(old, t, out, into);
     }
 }
@@ -330,6 +332,7 @@ static void add_cell(piercing *p, int32_t t, double backing, jali_shell *out)
         mesh->triangle[into][k] = p->vertex[place];
         if (out->outer.uv) lift_uv(p, face, p->s.point[place], out->outer.uv[into][k]);
     }
+    if (out->outer.faulty) out->outer.faulty[into] = p->shell->outer.faulty[p->patch->face[face]];
     copy_solid(p->shell, p->patch->face[face], out, into);
     if (p->tone[t] && out->solid) out->solid[into][1] = (float)backing;
 }

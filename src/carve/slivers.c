@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-static const double LEAST_UNITS = 24; // lattice units of height below which a triangle is a sliver
+static const double LEAST_UNITS = 4; // of height: rounding moves each vertex by up to 0.9
 enum { FLIPS_A_SLIVER = 8 };
 
 typedef struct mending {
@@ -154,6 +154,7 @@ static void gather(const mending *m)
         if (m->gone[t]) continue;
         for (int k = 0; k < 3; k++) shell->outer.mesh.triangle[kept][k] = m->linked.corner[4 * t + k];
         if (shell->outer.uv) memmove(shell->outer.uv[kept], shell->outer.uv[t], sizeof *shell->outer.uv);
+        if (shell->outer.faulty) shell->outer.faulty[kept] = shell->outer.faulty[t];
         if (shell->solid) memmove(shell->solid[kept], shell->solid[t], sizeof *shell->solid);
         kept++;
     }

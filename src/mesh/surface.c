@@ -24,6 +24,7 @@ void jali_surface_free(jali_context *ctx, jali_surface *surface)
 {
     jali_mesh_free(ctx, &surface->mesh);
     release(ctx, surface->uv);
+    release(ctx, surface->faulty);
     *surface = (jali_surface){0};
 }
 

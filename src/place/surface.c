@@ -2,19 +2,21 @@
 //
 // Source:  Binary Image Carving for 3D Printing, section 3: the picture is placed by an inverse perspective,
 //          and a surface that hides part of itself inside the picture's window is refused.
-// Limits:  the lattice of a surface's chart is 1/64 of a working pixel; faces may reach 2^24 units.
-// Checked: tests/test_place_on.c.
+// Limits:  the lattice of a surface's chart is 1/256 of a working pixel, coarser for pictures of more than
+// 16,000 px. Checked: tests/test_place_on.c.
 #include <jali/place.h>
 
 #include "place/grid.h"
 #include "place/lay.h"
 #include "place/patch.h"
 #include "place/resample.h"
+#include "plane/exact.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum { PIXEL_UNITS = 64, HIDDEN_SAMPLES = 400, SCALE_STEPS = 24 };
+enum { MOST_PIXEL_UNITS = 256, LEAST_PIXEL_UNITS = 16, HIDDEN_SAMPLES = 400, SCALE_STEPS = 24 };
+static const double REACH = 4; // sides of the picture that faces under it may reach beyond its middle
 static const double COVERED = 1 - 1e-9;      // rounding of the area sum
 static const double MOST_REFINEMENT = 3;     // of the working pixel where the surface is stretched
 static const double HIDDEN_TOLERANCE = 1e-4; // of the window: samples on edges
@@ -188,14 +190,16 @@ static jali_status choose_surface_grid(jali_context *ctx, placing_work *w, doubl
     double rows = w->opt.paper ? w->picture->height_px
                                : MAX(floor(columns * w->picture->height_px / w->picture->width_px + 0.5), 1);
     TRY(check_grid(ctx, columns + 2 * margin, rows + 2 * margin, pixel_mm));
+    int32_t units = MOST_PIXEL_UNITS;
+    while (units > LEAST_PIXEL_UNITS && REACH * MAX(columns, rows) * units > COORDINATE_LIMIT) units /= 2;
     jali_chart_free(ctx, w->chart);
     *w->chart = (jali_chart){
         .width_px = (int32_t)(columns + 2 * margin),
         .height_px = (int32_t)(rows + 2 * margin),
         .margin_px = (int32_t)margin,
         .outside_solid = true,
-        .pixel_units = PIXEL_UNITS,
-        .unit_mm = w->size_mm[0] / columns / PIXEL_UNITS,
+        .pixel_units = units,
+        .unit_mm = w->size_mm[0] / columns / units,
     };
 done:
     return status;
@@ -205,7 +209,8 @@ done:
 
 static void window(const placing_work *w, double scale, double low[2], double high[2])
 {
-    double middle[2] = {w->chart->width_px * (PIXEL_UNITS / 2.0), w->chart->height_px * (PIXEL_UNITS / 2.0)};
+    double middle[2] = {w->chart->width_px * (w->chart->pixel_units / 2.0),
+                        w->chart->height_px * (w->chart->pixel_units / 2.0)};
     for (int i = 0; i < 2; i++) {
         double half = (scale * w->size_mm[i] / 2 + w->ring_mm[i]) / w->chart->unit_mm;
         low[i] = middle[i] - half;
@@ -273,6 +278,25 @@ static jali_status check_room(jali_context *ctx, const placing_work *w)
                 w->size_mm[0] + 2 * w->ring_mm[0], w->size_mm[1] + 2 * w->ring_mm[1], worst_part(w), offer);
 }
 
+// Faults of the mesh do not matter elsewhere, but a picture cannot be pierced through them.
+static jali_status check_sound(jali_context *ctx, const placing_work *w)
+{
+    const bool *faulty = w->surface->faulty;
+    int32_t count = 0, first = -1;
+    for (int32_t i = 0; faulty && i < w->grown.patch.face_count; i++) {
+        int32_t face = w->grown.patch.face[i];
+        if (!faulty[face]) continue;
+        if (count++ == 0) first = face;
+    }
+    if (count == 0) return JALI_OK;
+    const double *at = w->surface->mesh.vertex[w->surface->mesh.triangle[first][0]];
+    return fail(
+        ctx, JALI_BAD_INPUT,
+        "%d triangle%s of the surface under the picture %s faulty (meeting others, or on edges of more than "
+        "two), one at (%.4g, %.4g, %.4g) mm; another place (--at) or a mended model is needed",
+        count, count == 1 ? "" : "s", count == 1 ? "is" : "are", at[0], at[1], at[2]);
+}
+
 // Anything of the object before the patch? A picture seen in part does not look right.
 static jali_status check_hidden(jali_context *ctx, const placing_work *w)
 {
@@ -313,6 +337,7 @@ static jali_status chart_patch(jali_context *ctx, placing_work *w, double pixel_
     TRY(grow_patch(ctx, &w->plane, w->chart, MAX(w->ring_mm[0], w->ring_mm[1]), w->first, w->turns,
                    &w->grown));
     TRY(check_room(ctx, w));
+    TRY(check_sound(ctx, w));
     TRY(fill_metric(ctx, &w->plane, &w->grown, w->chart, w->placed.stretch));
 done:
     return status;
