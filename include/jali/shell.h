@@ -72,7 +72,7 @@ JALI_API void jali_patch_free(jali_context *ctx, jali_patch *patch);
 ///          backing   share of the thickness, from the inner skin, that stays solid in the voids; 0 = none
 ///   inout  shell     unchanged when it fails
 ///   fails  JALI_NO_RESULT (a void reaches beyond the patch, or the patch covers a place of the chart twice:
-///          where is in the message), JALI_BAD_INPUT (contours that touch), JALI_LIMIT, JALI_CANCELLED,
+///          where is in the message), JALI_LIMIT, JALI_CANCELLED,
 ///          JALI_NO_MEMORY
 ///   cost   O(n log n) in points of the contours and of the patch
 JALI_API jali_status jali_pierce(jali_context *ctx, const jali_contours *picture, const jali_patch *patch,

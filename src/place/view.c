@@ -113,7 +113,7 @@ static double largest_room(const view *v, const int32_t *sum, const double half_
             for (int32_t x = hx; x < v->columns - hx; x++) {
                 int32_t bad = sum[(y + hy + 1) * width + x + hx + 1] - sum[(y - hy) * width + x + hx + 1] -
                               sum[(y + hy + 1) * width + x - hx] + sum[(y - hy) * width + x - hx];
-                double away = hypot(x - v->columns / 2, y - v->rows / 2);
+                double dx = x - v->columns / 2, dy = y - v->rows / 2, away = dx * dx + dy * dy;
                 if (bad > 0 || away >= nearest) continue;
                 nearest = away;
                 centre[0] = x, centre[1] = y;
