@@ -119,6 +119,7 @@ static jali_status predict(jali_context *ctx, const jali_options *opt, jali_resu
     jali_predict_options p = {.phi_e_mm = opt->optimise.phi_e_mm,
                               .phi_s_mm = opt->optimise.phi_s_mm,
                               .phi_v_mm = opt->optimise.phi_v_mm,
+                              .chart = &r->chart,
                               .recall = opt->recall};
     p.picture_mm = jali_chart_pixel_mm(&r->chart) * (r->chart.width_px - 2 * r->chart.margin_px);
     TRY(step(ctx, "predict", 0));

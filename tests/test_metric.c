@@ -298,7 +298,7 @@ TEST(operators_are_their_definition)
         tiling t;
         field f;
         CHECK_OK(tiling_create(ctx, &chart, w, h, 0, 0, 1, &t));
-        CHECK_OK(field_of_discs(ctx, &t, 2 + round, 0, false, &f));
+        CHECK_OK(field_of_discs(ctx, &t, 2 + round, 0, false, false, &f));
         check_operators(&a, &f, round & 4, round & 2);
         field_free(ctx, &f);
         tiling_free(ctx, &t);
@@ -319,7 +319,7 @@ TEST(windows_see_what_the_whole_picture_sees)
     jali_bitmap a = random_bitmap(&seed, SIZE, SIZE, 98), sparse = random_bitmap(&seed, SIZE, SIZE, 1), fits,
                 square, all;
     CHECK_OK(tiling_create(ctx, &chart, SIZE, SIZE, 0, 0, 1, &t));
-    CHECK_OK(field_of_discs(ctx, &t, 11, 0, false, &f));
+    CHECK_OK(field_of_discs(ctx, &t, 11, 0, false, false, &f));
     CHECK_OK(window_field_create(ctx, &f, &local));
     CHECK_OK(jali_bitmap_create(ctx, SIZE, SIZE, &fits));
     CHECK_OK(jali_bitmap_create(ctx, SIZE, SIZE, &all));
@@ -367,7 +367,7 @@ TEST(wide_patches_cross_words)
     field f;
     jali_bitmap a, got, want;
     CHECK_OK(tiling_create(ctx, &chart, 400, 300, 0, 0, 1, &t));
-    CHECK_OK(field_of_discs(ctx, &t, 190, 0, false, &f));
+    CHECK_OK(field_of_discs(ctx, &t, 190, 0, false, false, &f));
     CHECK_OK(jali_bitmap_create(ctx, 400, 300, &a));
     CHECK_OK(jali_bitmap_create(ctx, 400, 300, &got));
     CHECK_OK(jali_bitmap_create(ctx, 400, 300, &want));
@@ -401,7 +401,7 @@ TEST(operators_give_the_same_for_any_number_of_threads)
         tiling t;
         field f;
         CHECK_OK(tiling_create(by_threads[i], &chart, 500, 400, 0, 0, 1, &t));
-        CHECK_OK(field_of_discs(by_threads[i], &t, 9, 0, false, &f));
+        CHECK_OK(field_of_discs(by_threads[i], &t, 9, 0, false, false, &f));
         CHECK_OK(jali_bitmap_create(by_threads[i], 500, 400, &opened[i]));
         CHECK_OK(jali_bitmap_create(by_threads[i], 500, 400, &scratch));
         CHECK_OK(field_open(by_threads[i], &a, &f, true, &scratch, &opened[i]));
@@ -427,7 +427,7 @@ static jali_status open_on_a_curve(jali_context *limited, void *data)
     status = jali_bitmap_create(limited, 90, 40, &a);
     if (status == JALI_OK) status = jali_bitmap_create(limited, 90, 40, &scratch);
     if (status == JALI_OK) status = tiling_create(limited, chart, 90, 40, 0, 0, 1, &t);
-    if (status == JALI_OK) status = field_of_discs(limited, &t, 6, 0, false, &f);
+    if (status == JALI_OK) status = field_of_discs(limited, &t, 6, 0, false, false, &f);
     if (status == JALI_OK) status = field_open(limited, &a, &f, true, &scratch, &a);
     field_free(limited, &f);
     tiling_free(limited, &t);

@@ -3,17 +3,19 @@
 #define JALI_PREDICT_H
 
 #include <jali/bitmap.h>
+#include <jali/chart.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef struct jali_predict_options {
-    double picture_mm; // width of the picture on the surface, > 0
-    double phi_e_mm;   // how much wider a solid bar prints than drawn (0.1)
-    double phi_s_mm;   // narrowest solid that prints (0.3)
-    double phi_v_mm;   // narrowest void that prints (0.5)
-    bool recall;       // also measure the medial axes (costs more than the rest); default true
+    double picture_mm;       // width of the picture on the surface, > 0
+    double phi_e_mm;         // how much wider a solid bar prints than drawn (0.1)
+    double phi_s_mm;         // narrowest solid that prints (0.3)
+    double phi_v_mm;         // narrowest void that prints (0.5)
+    const jali_chart *chart; // of the mask to come; with a metric the lengths hold on the surface. NULL: flat
+    bool recall;             // also measure the medial axes (costs more than the rest); default true
 } jali_predict_options;
 
 JALI_API jali_predict_options jali_predict_defaults(void);
@@ -34,7 +36,8 @@ typedef struct jali_prediction {
 } jali_prediction;
 
 /// Put the picture on the fine grid: 4 times finer than its pixels, or 2 or 1 where those are so small that
-/// phi_s spans 32 fine pixels all the same, or finer until it spans 8.
+/// phi_s spans 32 fine pixels all the same, or finer until it spans 8 (and 4 where the surface is stretched
+/// most).
 JALI_API jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture,
                                            const jali_predict_options *opt, jali_reference *reference);
 JALI_API void jali_reference_free(jali_context *ctx, jali_reference *reference);

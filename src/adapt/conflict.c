@@ -32,7 +32,7 @@ static jali_status add_conflicts(jali_context *ctx, const jali_bitmap *details, 
         TRY(field_of_element(ctx, &square, &window));
     } else {
         TRY(tiling_create(ctx, opt->chart, details->width_px, details->height_px, 0, 0, 1, &tiles));
-        TRY(field_of_discs(ctx, &tiles, odd - 1, 0.5, true, &window));
+        TRY(field_of_discs(ctx, &tiles, odd - 1, 0.5, true, false, &window));
     }
     TRY(field_dilate(ctx, others, &window, false, scratch));
     combine(ctx, RULE_AND, details, scratch, scratch);

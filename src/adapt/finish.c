@@ -79,7 +79,7 @@ static jali_status merge_near(jali_context *ctx, const tiling *tiles, int32_t ga
     jali_bitmap merged = {0};
     jali_status status;
     if (gap < 2) return JALI_OK;
-    TRY(field_of_discs(ctx, tiles, (gap | 1) - 1, 0.5, true, &disc));
+    TRY(field_of_discs(ctx, tiles, (gap | 1) - 1, 0.5, true, false, &disc));
     TRY(jali_bitmap_create(ctx, cores->width_px, cores->height_px, &merged));
     TRY(field_dilate(ctx, cores, &disc, false, &merged));
     jali_bitmap swap = *cores;

@@ -22,7 +22,8 @@ jali_status jali_compensate(jali_context *ctx, const jali_bitmap *picture, const
         TRY(field_of_element(ctx, &square, &e));
     } else {
         TRY(tiling_create(ctx, opt->chart, picture->width_px, picture->height_px, 0, 0, 1, &tiles));
-        TRY(field_of_discs(ctx, &tiles, opt->size_px - 1, 0.5, true, &e)); // half a pixel is the pixel's own
+        TRY(field_of_discs(ctx, &tiles, opt->size_px - 1, 0.5, true, false,
+                           &e)); // half a pixel is the pixel's own
     }
     TRY(field_erode(ctx, picture, &e, opt->outside_solid, thinned));
 done:

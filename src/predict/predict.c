@@ -6,27 +6,30 @@
 // picture.
 //          A disc has whole diameter floor(phi / pixel), so that a bar of exactly phi prints wherever it
 //          lies.
+//          With a metric they are ellipses of the place, nowhere larger than the disc.
 // Checked: tests/test_predict.c on bars of known width.
 #include <jali/predict.h>
-#include "raster/raster.h"
+#include "raster/field.h"
 #include "base/base.h"
 
 #include <math.h>
 
 // A picture of few pixels is split further: on a grid this coarse a bar of phi_s may be a pixel too thin.
 static const double COARSE_PX_PER_PHI_S = 8;
-static const double FINE_PX_PER_PHI_S = 32; // finer than this gains nothing: 1/32 of the thinnest feature
+static const double COARSE_PX_STRETCHED = 4; // across an ellipse where the surface is stretched
+static const double FINE_PX_PER_PHI_S = 32;  // finer than this gains nothing: 1/32 of the thinnest feature
 
 jali_predict_options jali_predict_defaults(void)
 {
     return (jali_predict_options){.phi_e_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .recall = true};
 }
 
-static int32_t choose_factor(double pixel_mm, double phi_s_mm)
+static int32_t choose_factor(double pixel_mm, double phi_s_mm, double most_stretch)
 {
     double span_px = phi_s_mm / pixel_mm;
     int32_t factor = 1;
     while (factor < 4 && span_px * factor < FINE_PX_PER_PHI_S) factor *= 2;
+    span_px = fmin(span_px, span_px / most_stretch * (COARSE_PX_PER_PHI_S / COARSE_PX_STRETCHED));
     while (factor < 256 && span_px * factor < COARSE_PX_PER_PHI_S) factor *= 2;
     return factor;
 }
@@ -38,7 +41,8 @@ jali_status jali_reference_create(jali_context *ctx, const jali_bitmap *picture,
     *reference = (jali_reference){0};
     if (!(opt->picture_mm > 0) || !picture->word)
         return fail(ctx, JALI_BAD_VALUE, "a prediction needs a picture with a width in mm above 0");
-    int32_t factor = choose_factor(opt->picture_mm / picture->width_px, opt->phi_s_mm);
+    int32_t factor =
+        choose_factor(opt->picture_mm / picture->width_px, opt->phi_s_mm, most_stretch_of(opt->chart));
     reference->factor = factor;
     TRY(jali_bitmap_create(ctx, picture->width_px * factor, picture->height_px * factor,
                            &reference->picture));
@@ -79,27 +83,30 @@ static double recall_of(jali_context *ctx, const jali_bitmap *axis, int64_t axis
 
 // Print `mask` in place. `pixel_mm` is the grid's.
 static jali_status print_mask(jali_context *ctx, jali_bitmap *mask, bool outside, double pixel_mm,
-                              const jali_predict_options *opt)
+                              const tiling *tiles, const jali_predict_options *opt)
 {
     jali_status status;
     jali_bitmap scratch = {0};
-    element solid = {0}, hollow = {0}, growth = {0};
+    field solid = {0}, hollow = {0}, growth = {0};
     const double tolerance = 1e-9; // phi / pixel is often a whole number that floating point misses by a hair
     TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, &scratch));
-    TRY(element_disc(ctx, fmax(1, floor(opt->phi_s_mm / pixel_mm + tolerance)), &solid));
-    TRY(element_disc(ctx, fmax(1, floor(opt->phi_v_mm / pixel_mm + tolerance)), &hollow));
-    TRY(element_disc(ctx, 1 + 2 * floor(opt->phi_e_mm / 2 / pixel_mm + 0.5), &growth));
-    TRY(open_by(ctx, mask, &solid, outside, &scratch, mask));
-    TRY(close_by(ctx, mask, &hollow, outside, &scratch, mask));
-    TRY(dilate(ctx, mask, &growth, outside, &scratch));
+    double solid_px = fmax(1, floor(opt->phi_s_mm / pixel_mm + tolerance));
+    double void_px = fmax(1, floor(opt->phi_v_mm / pixel_mm + tolerance));
+    double growth_px = 2 * floor(opt->phi_e_mm / 2 / pixel_mm + 0.5);
+    TRY(field_of_discs(ctx, tiles, solid_px, 0, false, true, &solid));
+    TRY(field_of_discs(ctx, tiles, void_px, 0, false, true, &hollow));
+    TRY(field_of_discs(ctx, tiles, growth_px, 0.5, true, false, &growth));
+    TRY(field_open(ctx, mask, &solid, outside, &scratch, mask));
+    TRY(field_close(ctx, mask, &hollow, outside, &scratch, mask));
+    TRY(field_dilate(ctx, mask, &growth, outside, &scratch));
     jali_bitmap swap = *mask;
     *mask = scratch;
     scratch = swap;
 done:
     jali_bitmap_free(ctx, &scratch);
-    element_free(ctx, &solid);
-    element_free(ctx, &hollow);
-    element_free(ctx, &growth);
+    field_free(ctx, &solid);
+    field_free(ctx, &hollow);
+    field_free(ctx, &growth);
     return status;
 }
 
@@ -119,6 +126,16 @@ static jali_status place_mask(jali_context *ctx, const jali_bitmap *mask, int32_
     return JALI_OK;
 }
 
+// Where the chart's pixels lie on the fine grid.
+static jali_status place_metric(jali_context *ctx, const jali_chart *chart, const jali_bitmap *picture,
+                                int32_t fine_margin, tiling *tiles)
+{
+    double scale = chart ? (double)picture->width_px / (chart->width_px - 2 * chart->margin_px) : 1;
+    double first = chart ? fine_margin - chart->margin_px * scale : 0;
+    return tiling_create(ctx, chart, picture->width_px + 2 * fine_margin,
+                         picture->height_px + 2 * fine_margin, first, first, scale, tiles);
+}
+
 static jali_status count_pieces(jali_context *ctx, const jali_bitmap *a, int32_t *pieces)
 {
     components c;
@@ -134,6 +151,7 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
 {
     jali_status status;
     jali_bitmap fine = {0}, coarse = {0};
+    tiling tiles = {0};
     const jali_bitmap *picture = &reference->picture;
     *prediction = (jali_prediction){0};
     double pixel_mm = opt->picture_mm / picture->width_px;
@@ -141,7 +159,8 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
     int32_t margin = (int32_t)ceil(margin_px * scale);
     TRY(jali_bitmap_create(ctx, picture->width_px + 2 * margin, picture->height_px + 2 * margin, &fine));
     TRY(place_mask(ctx, mask, margin_px, outside_solid, margin, &fine));
-    TRY(print_mask(ctx, &fine, outside_solid, pixel_mm, opt));
+    TRY(place_metric(ctx, opt->chart, picture, margin, &tiles));
+    TRY(print_mask(ctx, &fine, outside_solid, pixel_mm, &tiles, opt));
     TRY(count_pieces(ctx, &fine, &prediction->pieces));
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &prediction->printed));
     resize_nearest(ctx, &fine, margin, margin, picture->width_px, picture->height_px, &prediction->printed);
@@ -160,5 +179,6 @@ done:
     if (status != JALI_OK) jali_prediction_free(ctx, prediction);
     jali_bitmap_free(ctx, &fine);
     jali_bitmap_free(ctx, &coarse);
+    tiling_free(ctx, &tiles);
     return status;
 }

@@ -2,6 +2,8 @@
 #include "raster/field.h"
 #include "base/base.h"
 
+#include <math.h>
+
 // Least and most, and how far any patch reaches.
 static void measure(field *f)
 {
@@ -81,7 +83,7 @@ done:
 }
 
 jali_status field_of_discs(jali_context *ctx, const tiling *tiles, double diameter_px, double more_px,
-                           bool odd, field *f)
+                           bool odd, bool safely, field *f)
 {
     jali_status status;
     element disc = {0};
@@ -94,7 +96,8 @@ jali_status field_of_discs(jali_context *ctx, const tiling *tiles, double diamet
     }
     TRY(ALLOCATE_CLEARED(ctx, each, tiles->kinds));
     for (int32_t kind = 0; kind < tiles->kinds; kind++) {
-        ellipse e = ellipse_of_disc(tiles->metric[kind], diameter_px, more_px);
+        double safe_px = safely ? diameter_px * exp(-tiles->slack[kind]) : diameter_px;
+        ellipse e = ellipse_of_disc(tiles->metric[kind], safe_px, more_px);
         TRY(patch_within(ctx, &e, odd, &each[kind]));
     }
     TRY(field_of_patches(ctx, tiles, each, f));

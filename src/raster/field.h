@@ -67,6 +67,8 @@ typedef struct tiling {
 ///   times)
 jali_status tiling_create(jali_context *ctx, const jali_chart *chart, int32_t width_px, int32_t height_px,
                           double left_px, double top_px, double scale, tiling *t);
+/// The largest stretch at the chart's knots, at least 1.
+double most_stretch_of(const jali_chart *chart);
 void tiling_free(jali_context *ctx, tiling *t);
 bool is_flat(const tiling *t);
 /// The metric at a pixel; the identity where flat.
@@ -91,8 +93,10 @@ jali_status field_of_element(jali_context *ctx, element *e, field *f);
 jali_status field_of_patches(jali_context *ctx, const tiling *tiles, patch *each, field *f);
 /// Discs of a diameter on the surface, more_px wider on all sides: patch_within of each kind. Flat:
 /// element_disc of diameter_px + 2 more_px.
+///   in     odd      each has its centre on a pixel
+///          safely   smaller by the kind's slack: nowhere in its tiles is a disc larger than asked for
 jali_status field_of_discs(jali_context *ctx, const tiling *tiles, double diameter_px, double more_px,
-                           bool odd, field *f);
+                           bool odd, bool safely, field *f);
 void field_free(jali_context *ctx, field *f);
 /// The patch that is set on pixel (x, y); beyond the bitmap the nearest tile's.
 const patch *patch_at(const field *f, int32_t x, int32_t y);

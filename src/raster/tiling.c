@@ -66,6 +66,17 @@ static jali_status check_knot(jali_context *ctx, const jali_chart *chart, int64_
                 (double)g[0], (double)g[1], (double)g[2], 1 / MOST_STRETCH, MOST_STRETCH);
 }
 
+double most_stretch_of(const jali_chart *chart)
+{
+    double most = 1;
+    int64_t knots = chart && chart->metric ? (int64_t)chart->metric_columns * chart->metric_rows : 0;
+    for (int64_t i = 0; i < knots; i++) {
+        const float *g = chart->metric[i];
+        most = fmax(most, ((double)g[0] + g[2]) / 2 + hypot(((double)g[0] - g[2]) / 2, g[1]));
+    }
+    return sqrt(most);
+}
+
 // The metric at a place in the chart's pixels, between the centres of the four nearest knots' cells.
 static void metric_between(const jali_chart *chart, double x, double y, double g[3])
 {
