@@ -289,12 +289,13 @@ static void check_operators(const jali_bitmap *a, const field *f, bool outside, 
 
 TEST(operators_are_their_definition)
 {
-    static const int32_t sizes[][2] = {{130, 40}, {64, 33}, {201, 61}, {20, 9}};
+    static const int32_t sizes[][2] = {{130, 40}, {64, 33}, {401, 81}, {20, 9}};
     uint64_t seed = 21;
     for (int32_t round = 0; round < 16; round++) {
         int32_t w = sizes[round % 4][0], h = sizes[round % 4][1];
         jali_chart chart = curved_chart(w, h, 8, wavy_metric);
         jali_bitmap a = random_bitmap(&seed, w, h, round % 2 ? 97 : 30);
+        for (int32_t y = 0; y < h && round % 4 == 2; y++) paint_run(&a, y, 30, w, true); // whole words set
         tiling t;
         field f;
         CHECK_OK(tiling_create(ctx, &chart, w, h, 0, 0, 1, &t));

@@ -10,12 +10,15 @@ static void measure(field *f)
     f->least = INT32_MAX;
     f->most = 0;
     f->left = f->right = f->above = f->below = 0;
+    f->own_pixel = true;
     for (int32_t i = 0; i < f->patches; i++) {
         const patch *p = &f->patch[i];
         f->least = MIN(f->least, p->size);
         f->most = MAX(f->most, p->size);
         f->above = MAX(f->above, -p->top);
         f->below = MAX(f->below, p->top + p->rows - 1);
+        f->own_pixel = f->own_pixel && p->top <= 0 && p->top + p->rows > 0 && p->span[-p->top][0] <= 0 &&
+                       p->span[-p->top][1] >= 0;
         for (int32_t k = 0; k < p->rows; k++) {
             f->left = MAX(f->left, -p->span[k][0]);
             f->right = MAX(f->right, p->span[k][1]);

@@ -84,6 +84,7 @@ typedef struct field {
     uint16_t *which;                   // [tiles->kinds], the patch of a kind; NULL when flat
     int32_t left, right, above, below; // how far any patch reaches beyond its pixel, >= 0
     int32_t least, most;               // of the patches' sizes
+    bool own_pixel;                    // every patch holds the pixel it is set on
 } field;
 
 /// A flat field; takes the element over.
