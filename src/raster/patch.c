@@ -22,7 +22,7 @@ ellipse ellipse_of_disc(const double metric[3], double diameter_px, double more_
     // The metric's eigenvalues are squared stretches; a semi-axis is the radius by the stretch, plus the
     // rest.
     double mean = (metric[0] + metric[2]) / 2, half = (metric[0] - metric[2]) / 2;
-    double apart = hypot(half, metric[1]);
+    double apart = sqrt(half * half + metric[1] * metric[1]);
     double wide = diameter_px / 2 / sqrt(mean + apart) + more_px; // across the most stretched direction
     double along = diameter_px / 2 / sqrt(mean - apart) + more_px;
     double cos2 = apart > 0 ? half / apart : 1,
@@ -148,8 +148,8 @@ static double width_across(const patch *p, double nx, double ny)
     double least = INFINITY, most = -INFINITY;
     for (int32_t k = 0; k < p->rows; k++) {
         double a = nx * p->span[k][0] + ny * (p->top + k), b = nx * p->span[k][1] + ny * (p->top + k);
-        least = fmin(least, fmin(a, b));
-        most = fmax(most, fmax(a, b));
+        least = MIN(least, MIN(a, b));
+        most = MAX(most, MAX(a, b));
     }
     return most - least + fabs(nx) + fabs(ny);
 }
@@ -157,11 +157,15 @@ static double width_across(const patch *p, double nx, double ny)
 bool patch_as_wide(const patch *p, const ellipse *e)
 {
     enum { DIRECTIONS = 32 };
-    const double pi = 3.14159265358979323846, share = 0.999;
+    const double share = 0.999, turn_cos = cos(3.14159265358979323846 / DIRECTIONS);
+    const double turn_sin = sqrt(1 - turn_cos * turn_cos);
+    double nx = 1, ny = 0;
     for (int32_t i = 0; i < DIRECTIONS; i++) {
-        double nx = cos(pi * i / DIRECTIONS), ny = sin(pi * i / DIRECTIONS);
         double across = nx * nx * e->shape[0] + 2 * nx * ny * e->shape[1] + ny * ny * e->shape[2];
-        if (width_across(p, nx, ny) < share * 2 * sqrt(across)) return false;
+        double width = width_across(p, nx, ny), turned = nx * turn_cos - ny * turn_sin;
+        if (width * width < share * share * 4 * across) return false;
+        ny = nx * turn_sin + ny * turn_cos;
+        nx = turned;
     }
     return true;
 }
