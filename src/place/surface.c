@@ -17,8 +17,8 @@
 
 enum { MOST_PIXEL_UNITS = 256, LEAST_PIXEL_UNITS = 16, HIDDEN_SAMPLES = 400, SCALE_STEPS = 24 };
 static const double REACH = 4; // sides of the picture that faces under it may reach beyond its middle
-static const double COVERED = 1 - 1e-9;      // rounding of the area sum
-static const double MOST_REFINEMENT = 3;     // of the working pixel where the surface is stretched
+static const double COVERED = 1 - 1e-6;  // places are rounded to the lattice; voids are checked exactly later
+static const double MOST_REFINEMENT = 3; // of the working pixel where the surface is stretched
 static const double HIDDEN_TOLERANCE = 1e-4; // of the window: samples on edges
 
 typedef struct placing_work {
