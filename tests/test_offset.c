@@ -32,8 +32,8 @@ static jali_mesh with_walls(const jali_mesh *outer, const double (*inner)[3])
         both.triangle[side / 3][side % 3] = a;
         both.triangle[count + side / 3][2 - side % 3] = a + vertices;
         if (marks.twin[side] != TWIN_OPEN) continue;
-        memcpy(both.triangle[next++], (int32_t[3]){b, a, a + vertices}, sizeof *both.triangle);
-        memcpy(both.triangle[next++], (int32_t[3]){b, a + vertices, b + vertices}, sizeof *both.triangle);
+        memcpy(both.triangle[next++], (int32_t[3]){a + vertices, b + vertices, a}, sizeof *both.triangle);
+        memcpy(both.triangle[next++], (int32_t[3]){a, b + vertices, b}, sizeof *both.triangle);
     }
     topology_free(ctx, &t);
     free(marks.twin);

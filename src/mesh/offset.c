@@ -295,8 +295,9 @@ static jali_status create_skins(offsetting *o)
         o->triangle[t][side % 3] = a;
         o->triangle[triangles + t][2 - side % 3] = a + count;
         if (o->marks.twin[side] != TWIN_OPEN) continue;
-        memcpy(o->triangle[next++], (int32_t[3]){b, a, a + count}, sizeof *o->triangle);
-        memcpy(o->triangle[next++], (int32_t[3]){b, a + count, b + count}, sizeof *o->triangle);
+        // From the outer a to the inner b, as the stage carve cuts its walls.
+        memcpy(o->triangle[next++], (int32_t[3]){a + count, b + count, a}, sizeof *o->triangle);
+        memcpy(o->triangle[next++], (int32_t[3]){a, b + count, b}, sizeof *o->triangle);
     }
     o->all_triangles = next;
     TRY(ALLOCATE(o->ctx, o->met, next));
