@@ -25,7 +25,8 @@ JALI_API void jali_shell_free(jali_context *ctx, jali_shell *shell);
 typedef struct jali_shell_options {
     double thickness_mm; // of the wall; 2 (default), > 0
     double least_mm; // where the wall must be thinner, because it would fold or meet itself, at least this;
-                     // 0.3 (default), below it the surface is refused
+                     // 0.3 (default), below it the surface is refused. Only over dents and spikes finer than
+                     // the wall may it be thinner, in a point: the report's thinnest_mm says so
 } jali_shell_options;
 
 JALI_API jali_shell_options jali_shell_defaults(void);

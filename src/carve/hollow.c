@@ -32,9 +32,10 @@ static jali_status refuse_wall(jali_context *ctx, const jali_mesh *mesh, const j
         for (int k = 0; k < 3; k++) at[k] += mesh->vertex[mesh->triangle[found->unsolved][c]][k] / 3;
     return fail(
         ctx, JALI_NO_RESULT,
-        "a wall of %g mm, the thinnest allowed, folds or meets itself at %d triangles, as at (%.2f, %.2f, "
+        "a wall of %g mm, the thinnest allowed, folds or meets itself at %d triangle%s, as at (%.2f, %.2f, "
         "%.2f) mm; allow a thinner one, or give a larger or smoother surface",
-        opt->least_mm, found->unsolved_triangles, at[0], at[1], at[2]);
+        opt->least_mm, found->unsolved_triangles, found->unsolved_triangles == 1 ? "" : "s", at[0], at[1],
+        at[2]);
 }
 
 jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const jali_shell_options *given,

@@ -23,6 +23,7 @@ enum { FOLD_ROUNDS = 40, MEET_ROUNDS = 30, GRADE_SWEEPS = 200 };
 static const double steepest = 0.5;    // change of the thickness along the surface
 static const double less = 0.8;        // what a failed test leaves of it
 static const double open_share = 0.45; // of the way to the next skin behind
+static const double dimple = 0.125;    // of the least wall: in a point, over what is finer than the wall
 
 typedef struct offsetting {
     jali_context *ctx;
@@ -203,15 +204,15 @@ static void place_inner(offsetting *o)
             o->inner[v][k] = rint((o->mesh->vertex[v][k] - o->wall[v] * o->way[v][k]) / unit) * unit + 0.0;
 }
 
-// Thin the walls of vertices that failed; false when none of them can be thinner.
-static bool thin(offsetting *o)
+// Thin the walls of vertices that failed, down to `least_mm`; false when none of them can be thinner.
+static bool thin(offsetting *o, double least_mm)
 {
     bool thinner = false;
     for (int32_t v = 0; v < o->mesh->vertex_count; v++) {
         if (!o->failed[v]) continue;
         o->failed[v] = false;
-        if (o->wall[v] <= o->opt->least_mm) continue;
-        o->wall[v] = MAX(less * o->wall[v], o->opt->least_mm);
+        if (o->wall[v] <= least_mm) continue;
+        o->wall[v] = MAX(less * o->wall[v], least_mm);
         thinner = true;
     }
     if (thinner) grade(o);
@@ -268,7 +269,7 @@ static jali_status unfold(offsetting *o, int32_t *folds, int32_t *one)
     for (int32_t round = 0;; round++) {
         TRY(step(o->ctx, "offset", 0.2 + 0.2 * round / FOLD_ROUNDS));
         *folds = find_folds(o, one);
-        if (*folds == 0 || round == FOLD_ROUNDS || !thin(o)) break;
+        if (*folds == 0 || round == FOLD_ROUNDS || !thin(o, dimple * o->opt->least_mm)) break;
     }
     memset(o->failed, 0, (size_t)o->mesh->vertex_count * sizeof *o->failed);
 done:
@@ -361,7 +362,7 @@ static jali_status part_skins(offsetting *o, offset_report *report)
         report->rounds = round + 1;
         report->unsolved_triangles = folds + meetings;
         report->unsolved = one;
-        if (meetings == 0 || round == MEET_ROUNDS || !thin(o)) break;
+        if (meetings == 0 || round == MEET_ROUNDS || !thin(o, o->opt->least_mm)) break;
     }
 done:
     return status;
