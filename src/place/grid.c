@@ -7,6 +7,7 @@
 #include <math.h>
 
 static const double px_a_feature = 8;
+static const double px_where_stretched = 4; // across, where the surface is stretched most (docs/metric.md)
 static const double largest_mm = 10000;
 enum { MOST_SIDE_PX = 1 << 20 };
 static const int64_t most_px = INT64_C(1) << 32;
@@ -74,10 +75,10 @@ jali_status picture_size(jali_context *ctx, const jali_picture *picture, const j
 // The coarsest pixel of which the smaller width holds at least 8 and the growth of an edge, phi_e / 2, a
 // whole number: then the compensation is exact. A growth so small that this needs more than 16 a width is
 // rounded.
-double automatic_pixel(const jali_place_options *opt)
+double automatic_pixel(const jali_place_options *opt, double most_stretch)
 {
     double width_mm = MIN(opt->phi_s_mm, opt->phi_v_mm), growth_mm = opt->phi_e_mm / 2;
-    double coarsest = width_mm / px_a_feature;
+    double coarsest = width_mm / MAX(px_a_feature, px_where_stretched * most_stretch);
     double fitting = growth_mm > 0 ? growth_mm / ceil(growth_mm / coarsest - 1e-9) : 0;
     return fitting >= coarsest / 2 ? fitting : coarsest;
 }

@@ -14,8 +14,8 @@ jali_status check_picture(jali_context *ctx, const jali_picture *picture, int32_
 jali_status picture_size(jali_context *ctx, const jali_picture *picture, const jali_place_options *opt,
                          double size_mm[2]);
 
-/// The working pixel in mm when none is asked for.
-double automatic_pixel(const jali_place_options *opt);
+/// The working pixel in mm when none is asked for, on a surface stretched so many times at most.
+double automatic_pixel(const jali_place_options *opt, double most_stretch);
 
 /// Width of the margin of a picture with solid surroundings, 0 without.
 double margin_mm(const jali_place_options *opt);

@@ -20,7 +20,7 @@ jali_place_options jali_place_defaults(void)
 static double pixel_size(const jali_picture *picture, const jali_place_options *opt, double width_mm)
 {
     if (opt->paper) return width_mm / picture->width_px;
-    return opt->pixel_mm > 0 ? opt->pixel_mm : automatic_pixel(opt);
+    return opt->pixel_mm > 0 ? opt->pixel_mm : automatic_pixel(opt, 1);
 }
 
 // The smallest power of two at which the extent stays below 2^24 units.

@@ -17,8 +17,8 @@
 
 enum { MOST_PIXEL_UNITS = 256, LEAST_PIXEL_UNITS = 16, HIDDEN_SAMPLES = 400, SCALE_STEPS = 24 };
 static const double REACH = 4; // sides of the picture that faces under it may reach beyond its middle
-static const double COVERED = 1 - 1e-6;  // places are rounded to the lattice; voids are checked exactly later
-static const double MOST_REFINEMENT = 3; // of the working pixel where the surface is stretched
+static const double COVERED = 1 - 1e-6; // places are rounded to the lattice; voids are checked exactly later
+static const double MOST_STRETCH = 4;   // for which the working pixel is made finer
 static const double HIDDEN_TOLERANCE = 1e-4; // of the window: samples on edges
 
 typedef struct placing_work {
@@ -356,12 +356,12 @@ static jali_status lay_picture(jali_context *ctx, placing_work *w)
     point_on_face(&w->plane, w->first, w->turns, w->placed.centre_mm);
     double pixel_mm = w->opt.paper          ? w->size_mm[0] / w->picture->width_px
                       : w->opt.pixel_mm > 0 ? w->opt.pixel_mm
-                                            : automatic_pixel(&w->opt);
+                                            : automatic_pixel(&w->opt, 1);
     TRY(chart_patch(ctx, w, pixel_mm));
     TRY(check_hidden(ctx, w));
     // Widths count on the surface: where it is stretched they are fewer pixels.
-    double finer = MIN(w->placed.stretch[1], MOST_REFINEMENT);
-    if (finer > 1.05 && !w->opt.paper && w->opt.pixel_mm == 0) TRY(chart_patch(ctx, w, pixel_mm / finer));
+    double finer_mm = automatic_pixel(&w->opt, MIN(w->placed.stretch[1], MOST_STRETCH));
+    if (finer_mm < pixel_mm && !w->opt.paper && w->opt.pixel_mm == 0) TRY(chart_patch(ctx, w, finer_mm));
 done:
     return status;
 }
