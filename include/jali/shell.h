@@ -41,13 +41,12 @@ typedef struct jali_shell_report {
 /// Hollow out a surface: give it an inner skin at the wall's thickness along the normals. Where that would
 /// fold or meet a skin, the wall is thinner.
 ///   inout  surface   moves into the shell (empty afterwards); its vertices are rounded to the shell's
-///   lattice
+///                    lattice
 ///          opt       NULL means the defaults
 ///   out    shell     neither skin meets itself or the other
 ///          report    may be NULL
 ///   fails  JALI_BAD_VALUE, JALI_NO_RESULT (the least wall folds or meets a skin as well: where is in the
-///   message),
-///          JALI_LIMIT, JALI_CANCELLED, JALI_NO_MEMORY
+///          message), JALI_LIMIT, JALI_CANCELLED, JALI_NO_MEMORY
 JALI_API jali_status jali_shell_create(jali_context *ctx, jali_surface *surface,
                                        const jali_shell_options *opt, jali_shell *shell,
                                        jali_shell_report *report);

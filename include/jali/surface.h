@@ -49,15 +49,12 @@ JALI_API const jali_surface_info *jali_surface_list(int32_t *count);
 ///   plate:w=,h=            stands upright and faces the front; u = x, v = z. It has no inside of its own
 ///   cylinder:r=,h=         u = angle * r, v = height
 ///   cone:r=,top=,h=        radius r at the base, `top` (may be 0) above; u, v = the unrolled sector,
-///   exactly: the
-///                          front's line upright, its base at (0, 0)
+///                          exactly: the front's line upright, its base at (0, 0)
 ///   sphere:r=              closed; u = angle * r, v = arc length from the lowest point
 ///   vase:NAME,h=,r=        turned from a smooth profile; h and r (largest radius) scale it, one alone scales
-///   both;
-///                          u = angle * (largest radius), v = arc length from the base
+///                          both; u = angle * (largest radius), v = arc length from the base
 ///   vase:profile=FILE,..   from a file of "radius height" pairs in mm, one a line, # begins a comment; a
-///   pair given
-///                          twice is a corner
+///                          pair given twice is a corner
 ///
 /// All but the plate take facets= (triangles around, 8 .. 4096; else from the tolerance, a multiple of 16)
 /// and tolerance=. Cylinder, cone and vase take floor=yes|no (default: vase yes, others no): a disc at the
@@ -71,8 +68,7 @@ JALI_API const jali_surface_info *jali_surface_list(int32_t *count);
 ///   in     opt      NULL means the defaults; keys of the description win
 ///   out    surface  manifold, no degenerate triangle; free with jali_surface_free
 ///   fails  JALI_BAD_VALUE (the message says what is accepted), JALI_BAD_INPUT and JALI_IO (the profile's
-///   file),
-///          JALI_LIMIT, JALI_NO_MEMORY, JALI_CANCELLED
+///          file), JALI_LIMIT, JALI_NO_MEMORY, JALI_CANCELLED
 ///   cost   O(triangles + rows^2)
 JALI_API jali_status jali_surface_make(jali_context *ctx, const char *description,
                                        const jali_surface_options *opt, jali_surface *surface);
@@ -119,8 +115,7 @@ JALI_API jali_status jali_surface_sentences(jali_context *ctx, const jali_surfac
 ///   out    surface  free with jali_surface_free
 ///          report   NULL is accepted; free with jali_surface_report_free
 ///   fails  what jali_read_model says; JALI_BAD_VALUE (an option, or more than 10 m), JALI_BAD_INPUT (no
-///   triangle has an
-///          area)
+///          triangle has an area)
 ///   cost   that of jali_check
 JALI_API jali_status jali_surface_read(jali_context *ctx, const char *path, const jali_surface_options *opt,
                                        jali_surface *surface, jali_surface_report *report);

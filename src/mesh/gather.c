@@ -1,7 +1,7 @@
 // Gathering a mesh; polygons become triangles.
 //
 // Limits:  a polygon is seen along its normal (Newell's), so one that is folded over itself there is refused.
-// Checked: tests/test_model.c: concave polygons of every turn, a spiral, a bow tie.
+// Checked: tests/test_readers.c: concave polygons of every turn, a spiral, a bow tie.
 #include "mesh/gather.h"
 
 #include <math.h>

@@ -28,9 +28,8 @@ bool triangles_meet(const lattice *l, const int32_t a[3], const int32_t b[3]);
 /// Count the pairs that do.
 ///   out    met     [triangles], set for those of a pair; NULL is accepted. What was set before stays so
 ///          found   a, b are triangles: of all pairs the one with the lowest a, then b
-///          capped  some block of 1024 triangles had more than a million pairs: the count is at least so, and
-///          not
-///                  every triangle of a pair may be set
+///          capped  some block of 1024 triangles had more than a million pairs: the count is at least so,
+///                  and not every triangle of a pair may be set
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT
 ///   cost   O(pairs of touching boxes); the same for any number of threads
 jali_status count_intersections(jali_context *ctx, const exact_surface *s, bool *met, finding *found,

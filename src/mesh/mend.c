@@ -6,8 +6,7 @@
 // crowded edges crowded.
 //
 // Limits:  a triangle on a line with three places of its own leaves a crack when it is dropped. A body within
-// a body
-//          is taken for a void.
+//          a body is taken for a void.
 // Checked: tests/test_mend.c: cubes with each flaw, shells in shells, real files.
 #include "mesh/mend.h"
 

@@ -10,8 +10,10 @@
 // cross-section) . way > 0 for all s and the three ways; the normal is quadratic in s, so three Bernstein
 // coefficients by three ways decide.
 //
-// Limits:  two skins may come as near as the first guess lets them; only their meeting is excluded for
-// certain. Checked: tests/test_offset.c.
+// Limits:  vertices and triangles are those of the surface, so a corner where walls, slopes and slits meet in
+// more
+//          ways than one vertex can go is reported as unsolved. The hollow between two walls may be narrow.
+// Checked: tests/test_offset.c.
 #include "mesh/offset.h"
 #include "mesh/intersect.h"
 #include "mesh/offset_ways.h"

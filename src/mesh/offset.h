@@ -6,9 +6,9 @@
 
 typedef struct offset_options {
     double thickness_mm; // of the wall, > 0
-    double
-        least_mm; // where it must be thinner to meet nothing, at least this, > 0. Over dents and spikes finer
-                  // than the wall it may come down to an eighth of it in a point, to turn over nowhere
+    // Where it must be thinner to meet nothing, at least this, > 0. Over dents and spikes finer than the wall
+    // it may come down to an eighth of it in a point, to turn over nowhere.
+    double least_mm;
     double unit_mm; // a power of two of which every coordinate is a multiple, inner ones too
 } offset_options;
 

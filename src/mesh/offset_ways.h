@@ -9,7 +9,7 @@
 /// thickness times way.
 ///   in     twin  the other side of each side (mesh/topology)
 ///   out    way   [vertex_count]; way . normal is 1 on every face around the vertex as nearly as can be,
-///   |way| <= 2
+///                |way| <= 2
 ///          kept  [vertex_count] the mean of that over the faces, <= 1
 ///   fails  JALI_NO_MEMORY
 jali_status offset_ways(jali_context *ctx, const jali_mesh *mesh, const int32_t *twin, double (*way)[3],

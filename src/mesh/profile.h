@@ -28,8 +28,7 @@ jali_status profile_half_circle(jali_context *ctx, double radius_mm, profile *p)
 /// A smooth curve through points given as (radius, height) from the base up or from the top down; a point
 /// given twice is a corner.
 ///   fails  JALI_BAD_VALUE (too few, a radius below 0, or 0 elsewhere than at an end, the curve crosses
-///   itself;
-///          the sentence begins with `what`)
+///          itself; the sentence begins with `what`)
 jali_status profile_through(jali_context *ctx, const char *what, int32_t count, const double (*point)[2],
                             profile *p);
 

@@ -1,7 +1,7 @@
 // Wavefront OBJ: vertices, texture points, faces.
 //
 // Limits:  curves, groups, materials and normals are passed over; a face names vertices that stand above it.
-// Checked: tests/test_model.c, fuzz/fuzz_obj.c.
+// Checked: tests/test_readers.c, fuzz/fuzz_obj.c.
 #include "mesh/gather.h"
 #include "mesh/text.h"
 

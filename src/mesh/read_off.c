@@ -1,9 +1,8 @@
 // OFF, the object file format: counts, vertices, faces.
 //
 // Limits:  what stands behind three coordinates, or behind the corners of a face, is passed over (colours,
-// normals);
-//          the binary kind and the one in four dimensions are refused.
-// Checked: tests/test_model.c, fuzz/fuzz_off.c.
+//          normals); the binary kind and the one in four dimensions are refused.
+// Checked: tests/test_readers.c, fuzz/fuzz_off.c.
 #include "mesh/gather.h"
 #include "mesh/text.h"
 

@@ -4,7 +4,7 @@
 // are taken, of `face` the list vertex_indices (or vertex_index), whatever their types.
 //
 // Limits:  triangle strips are no faces; vertices stand before faces; 64 properties an element, 32 elements.
-// Checked: tests/test_model.c, fuzz/fuzz_ply.c.
+// Checked: tests/test_readers.c, fuzz/fuzz_ply.c.
 #include "mesh/gather.h"
 #include "mesh/text.h"
 

@@ -23,8 +23,7 @@ typedef struct turned {
 
 /// Make the surface; the curve is the caller's. See jali_surface_make.
 ///   fails  JALI_BAD_VALUE (the profile crosses itself), JALI_LIMIT, JALI_NO_MEMORY; the surface may then be
-///   half
-///          made, the caller frees it
+///          half made, the caller frees it
 jali_status turn_profile(jali_context *ctx, const turned *t, jali_surface *surface);
 
 /// Allocate mesh and uv.
