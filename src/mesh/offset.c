@@ -10,9 +10,9 @@
 // cross-section) . way > 0 for all s and the three ways; the normal is quadratic in s, so three Bernstein
 // coefficients by three ways decide.
 //
-// Limits:  vertices and triangles are those of the surface, so a corner where walls, slopes and slits meet in
-// more
-//          ways than one vertex can go is reported as unsolved. The hollow between two walls may be narrow.
+// Limits:  vertices and triangles are those of the surface, so a corner where walls, slopes and slits meet
+//          in more ways than one vertex can go is reported as unsolved. The hollow between two walls may be
+//          narrow.
 // Checked: tests/test_offset.c.
 #include "mesh/offset.h"
 #include "mesh/intersect.h"
