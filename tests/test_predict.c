@@ -4,6 +4,8 @@
 
 #include <jali/predict.h>
 
+#include <math.h>
+
 // One picture pixel is 0.1 mm; phi_s 0.4, phi_v 0.6, phi_e 0.2 mm: 4, 6 and 1 a side, 16, 24 and 4 on the
 // fine grid.
 static jali_predict_options options(int32_t width_px)
@@ -27,13 +29,14 @@ static jali_bitmap bar_mask(int32_t wide, bool white)
     return mask;
 }
 
-// White fine pixels in the middle row of what the mask prints as.
-static int32_t printed_across(const jali_bitmap *mask, bool outside_solid)
+// White fine pixels in the middle row of what the mask prints as on a surface.
+static int32_t printed_on(const jali_chart *chart, const jali_bitmap *mask, bool outside_solid)
 {
     jali_bitmap picture;
     jali_reference reference;
     jali_prediction p;
     jali_predict_options opt = options(SIDE_PX);
+    opt.chart = chart;
     CHECK_OK(jali_bitmap_create(ctx, SIDE_PX, SIDE_PX, &picture));
     CHECK_OK(jali_reference_create(ctx, &picture, &opt, &reference));
     CHECK_INT(reference.factor, 4);
@@ -45,6 +48,11 @@ static int32_t printed_across(const jali_bitmap *mask, bool outside_solid)
     jali_reference_free(ctx, &reference);
     jali_bitmap_free(ctx, &picture);
     return across;
+}
+
+static int32_t printed_across(const jali_bitmap *mask, bool outside_solid)
+{
+    return printed_on(NULL, mask, outside_solid);
 }
 
 TEST(a_solid_bar_of_phi_s_prints_phi_e_wider_and_a_thinner_one_not_at_all)
@@ -65,6 +73,31 @@ TEST(a_void_bar_of_phi_v_prints_phi_e_narrower_and_a_thinner_one_not_at_all)
         jali_bitmap mask = bar_mask(2 * fine, false);
         CHECK_INT(printed_across(&mask, true), SIDE_PX * 4 - (fine >= 24 ? fine - 8 : 0));
         jali_bitmap_free(ctx, &mask);
+    }
+}
+
+TEST(on_a_stretched_surface_bars_count_as_wide_as_they_are_there)
+{
+    // Twice as wide across (a step of the logarithm, so that nothing is rounded), as they are along.
+    float metric[4][3];
+    for (int32_t knot = 0; knot < 4; knot++) {
+        metric[knot][0] = (float)exp(2 * 44 / 64.0);
+        metric[knot][1] = 0;
+        metric[knot][2] = 1;
+    }
+    jali_chart chart = {.width_px = SIDE_PX * MASK_SCALE + 2 * MARGIN_PX,
+                        .height_px = SIDE_PX * MASK_SCALE + 2 * MARGIN_PX,
+                        .margin_px = MARGIN_PX,
+                        .metric = metric,
+                        .metric_columns = 2,
+                        .metric_rows = 2,
+                        .metric_step_px = 300};
+    for (int32_t fine = 4; fine <= 20; fine += 2) {
+        jali_bitmap solid = bar_mask(2 * fine, true), hollow = bar_mask(2 * fine, false);
+        CHECK_INT(printed_on(&chart, &solid, false), fine >= 8 ? fine + 4 : 0);
+        CHECK_INT(printed_on(&chart, &hollow, true), SIDE_PX * 4 - (fine >= 12 ? fine - 4 : 0));
+        jali_bitmap_free(ctx, &solid);
+        jali_bitmap_free(ctx, &hollow);
     }
 }
 
@@ -252,6 +285,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_solid_bar_of_phi_s_prints_phi_e_wider_and_a_thinner_one_not_at_all),
         cmocka_unit_test(a_void_bar_of_phi_v_prints_phi_e_narrower_and_a_thinner_one_not_at_all),
+        cmocka_unit_test(on_a_stretched_surface_bars_count_as_wide_as_they_are_there),
         cmocka_unit_test(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair),
         cmocka_unit_test(pictures_of_few_pixels_are_split_until_a_bar_of_phi_s_prints_wherever_it_lies),
         cmocka_unit_test(the_error_rate_is_what_is_counted_by_hand),
