@@ -69,7 +69,7 @@ typedef struct jali_placed {
     double centre_mm[3];  // where the picture's centre lies
 } jali_placed;
 
-/// Lay a picture on a surface.
+/// Lay a picture on a surface. Projected, only faces on which a mm of the picture is at most 4 mm count.
 ///   in     surface   its faces inside the picture and its frame must be free of faults
 ///          opt       NULL means the defaults; frame_mm is the protected zone around the picture, which the
 ///                    surface must have and which stays solid

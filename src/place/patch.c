@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+static const double MOST_STRETCH = 4; // a face more tilted to the view than that is turned away
+
 // Points of the patch by vertex and place: a vertex on a seam has two.
 typedef struct point_table {
     int32_t *slot; // [slots] point + 1, 0 = free
@@ -27,6 +29,13 @@ static int32_t find_point(point_table *table, jali_patch *patch, int32_t vertex,
     patch->vertex[p] = vertex;
     memcpy(patch->point[p], at, sizeof *patch->point);
     return p;
+}
+
+static bool is_steep(const laid *l, int32_t face)
+{
+    double g[3];
+    if (!face_metric(l, face, g)) return true;
+    return (g[0] + g[2]) / 2 + hypot((g[0] - g[2]) / 2, g[1]) > MOST_STRETCH * MOST_STRETCH;
 }
 
 // A face's corners on the lattice; false when it does not lie counter-clockwise there or stays `around_grid`
@@ -56,7 +65,7 @@ static bool corners_on_lattice(const laid *l, const jali_chart *chart, int32_t f
     if (*beyond) return false;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 2; i++) at[k][i] = (int32_t)floor(exact[k][i] + 0.5);
-    return orientation(at[0], at[1], at[2]) > 0;
+    return orientation(at[0], at[1], at[2]) > 0 && !(l->depth && is_steep(l, face));
 }
 
 // Across a side, the neighbour's places may have made turns around the surface: how many, by the side's own
