@@ -2,6 +2,7 @@
 //
 // Layout: 12 bytes of parameters (see settings), then pixels, a bit each; missing ones repeat a noise of the
 // last byte.
+#include "drawn.h"
 #include "model.h"
 #include "plain.h"
 
@@ -10,18 +11,6 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { PARAMETERS = 12, MOST_SIDE_PX = 96 };
-
-static uint8_t *grey_of(const uint8_t *data, size_t size, int32_t width, int32_t height)
-{
-    uint8_t *grey = malloc((size_t)width * (size_t)height);
-    uint32_t noise = size ? data[size - 1] : 0;
-    for (int32_t i = 0; i < width * height; i++) {
-        noise = noise * 1664525 + 1013904223;
-        bool white = (size_t)(i / 8) < size ? data[i / 8] >> i % 8 & 1 : noise >> 31;
-        grey[i] = white ? 255 : 0;
-    }
-    return grey;
-}
 
 // The longer side is 2 to 33 times the narrower width: from a picture of which almost nothing prints to one
 // of which all does; the working grid stays below some 500 px.
@@ -44,15 +33,6 @@ static jali_options settings(const uint8_t *p, int32_t width_px, int32_t height_
     opt.carve.hole_diameter_mm = p[9] % 3 == 1 ? 1 + p[9] % 5 : 0;
     opt.carve.corner_radius_mm = p[10] % 3 == 1 ? 0.5 : 0;
     return opt;
-}
-
-static void require_read_back(jali_context *ctx, const jali_mesh *mesh, jali_format format)
-{
-    jali_bytes bytes = {0};
-    jali_write_options plain_file = {.no_thumbnail = true};
-    REQUIRE(jali_write_bytes(ctx, format, &(jali_product){.mesh = mesh}, &plain_file, &bytes) == JALI_OK);
-    REQUIRE(jali_check_readback(ctx, bytes.data, bytes.size, mesh) == JALI_OK);
-    jali_bytes_free(ctx, &bytes);
 }
 
 static void require_promises(jali_context *ctx, const jali_options *opt, const jali_result *r)

@@ -1,4 +1,4 @@
-// What manifold-3d says of a binary STL: is it a manifold, in one piece, and of which volume?
+// What manifold-3d says of a binary STL: is it a manifold, in one piece, of which volume and genus?
 //
 //     node judge.mjs FILE.stl
 import { readFileSync } from 'node:fs'
@@ -29,5 +29,5 @@ try {
     process.exit(1)
 }
 const parts = solid.decompose().length
-console.log(`status ${solid.status()}\nparts ${parts}\nvolume ${solid.volume()}`)
+console.log(`status ${solid.status()}\nparts ${parts}\nvolume ${solid.volume()}\ngenus ${solid.genus()}`)
 process.exit(parts === 1 && solid.numTri() > 0 ? 0 : 1)

@@ -39,6 +39,35 @@ static void add_level(columns *c, int32_t p, int32_t z)
     c->count[p]++;
 }
 
+// Call for each part of the interval that the neighbour's leaves free: at most two.
+static int free_parts(interval mine, interval other, interval part[2])
+{
+    int count = 0;
+    if (!is_solid(mine)) return 0;
+    if (!is_solid(other) || other.bottom >= mine.top || other.top <= mine.bottom) {
+        part[count++] = mine;
+        return count;
+    }
+    if (other.bottom > mine.bottom) part[count++] = (interval){mine.bottom, other.bottom};
+    if (other.top < mine.top) part[count++] = (interval){other.top, mine.top};
+    return count;
+}
+
+// The levels at which the walls on side s are cut; returns how many, adds them to both columns when asked to.
+static int32_t cut_walls(const cells *plane, const interval *solid, int32_t s, bool add, columns *c)
+{
+    interval part[2];
+    int32_t cuts = 0, between = plane->slices && plane->slices[s] ? 1 << plane->slices[s] : 0;
+    int parts = between ? free_parts(solid[s >> 2], solid[plane->beside[s] >> 2], part) : 0;
+    for (int i = 0; i < parts; i++)
+        for (int32_t z = (part[i].bottom / between + 1) * between; z < part[i].top; z += between, cuts++)
+            if (add) {
+                add_level(c, plane->corner[next_side(s)], z);
+                add_level(c, plane->corner[last_side(s)], z);
+            }
+    return cuts;
+}
+
 static jali_status raise_columns(jali_context *ctx, const cells *plane, const interval *solid, columns *c)
 {
     jali_status status;
@@ -47,7 +76,12 @@ static jali_status raise_columns(jali_context *ctx, const cells *plane, const in
     TRY(ARENA(ctx, c->vertex, plane->point_count));
     memset(c->count, 0, (size_t)plane->point_count * sizeof *c->count);
     for (int32_t t = 0; t < plane->cell_count; t++)
-        for (int k = 0; k < 3 && is_solid(solid[t]); k++) c->count[plane->corner[4 * t + k]] += 2;
+        for (int k = 0; k < 3 && is_solid(solid[t]); k++) {
+            int32_t s = 4 * t + k, cuts = cut_walls(plane, solid, s, false, c);
+            c->count[plane->corner[s]] += 2;
+            c->count[plane->corner[next_side(s)]] += cuts;
+            c->count[plane->corner[last_side(s)]] += cuts;
+        }
     c->first[0] = 0;
     for (int32_t p = 0; p < plane->point_count; p++) c->first[p + 1] = c->first[p] + c->count[p];
     TRY(ARENA(ctx, c->level, c->first[plane->point_count]));
@@ -56,6 +90,7 @@ static jali_status raise_columns(jali_context *ctx, const cells *plane, const in
         for (int k = 0; k < 3 && is_solid(solid[t]); k++) {
             add_level(c, plane->corner[4 * t + k], solid[t].bottom);
             add_level(c, plane->corner[4 * t + k], solid[t].top);
+            cut_walls(plane, solid, 4 * t + k, true, c);
         }
     int64_t vertices = 0;
     for (int32_t p = 0; p < plane->point_count; p++) {
@@ -74,20 +109,6 @@ static int32_t rank_of(const columns *c, int32_t p, int32_t z)
     int32_t rank = 0;
     while (level[rank] != z) rank++;
     return rank;
-}
-
-// Call for each part of the interval that the neighbour's leaves free: at most two.
-static int free_parts(interval mine, interval other, interval part[2])
-{
-    int count = 0;
-    if (!is_solid(mine)) return 0;
-    if (!is_solid(other) || other.bottom >= mine.top || other.top <= mine.bottom) {
-        part[count++] = mine;
-        return count;
-    }
-    if (other.bottom > mine.bottom) part[count++] = (interval){mine.bottom, other.bottom};
-    if (other.top < mine.top) part[count++] = (interval){other.top, mine.top};
-    return count;
 }
 
 typedef struct writer {
@@ -246,7 +267,8 @@ jali_status build_plate(jali_context *ctx, const triangulation *plane, const int
 {
     jali_status status;
     prisms built = {0};
-    cells all = {plane->point_count, plane->triangle_count, plane->corner, plane->beside, plane->star, NULL};
+    cells all = {
+        plane->point_count, plane->triangle_count, plane->corner, plane->beside, plane->star, NULL, NULL};
     *mesh = (jali_mesh){0};
     TRY(build_prisms(ctx, &all, solid, &built));
     if (built.contact >= 0) {

@@ -12,8 +12,9 @@ typedef struct cells {
     const int32_t *corner; // [4 * cell_count] point, or GHOST
     const int32_t *beside; // [4 * cell_count] the same edge as a side of the neighbour
     const int32_t *star;   // [point_count] a cell at each point that has one
-    const uint8_t *leans; // [4 * cell_count] the wall on this side has diagonals that rise along it, with the
-                          // cell on the left, rather than fall; NULL: none has
+    // Of walls, [4 * cell_count], or NULL:
+    const uint8_t *leans;  // the wall on this side has diagonals that rise along it, rather than fall
+    const uint8_t *slices; // it is cut at the multiples of 2^slices levels; 0: it is not cut
 } cells;
 
 /// The part of the height that is solid in a cell, in levels; empty when top == bottom.

@@ -1,9 +1,8 @@
 // The solid of a shell: prisms between the two skins.
 //
-// Limits:  walls and skins are flat between vertices: a wall that stands askew is two triangles, which leave
-// the
-//          ruled surface by a quarter of its twist, always into the solid, so that walls with a narrow void
-//          between them cannot meet.
+// Limits:  walls and skins are flat between vertices. A wall that stands askew is cut into slices of two
+//          triangles, which leave the ruled surface by at most 0.01 mm, always into the solid, so that walls
+//          with a narrow void between them cannot meet.
 // Checked: tests/test_shell.c.
 #include <jali/shell.h>
 
@@ -12,7 +11,9 @@
 
 #include <math.h>
 
-enum { LEVELS = 1 << 16 }; // of the thickness
+enum { LEVELS_LOG2 = 16, LEVELS = 1 << LEVELS_LOG2 }; // of the thickness
+enum { MOST_CUTS = 7 };                               // in halves
+static const double MOST_TWIST_MM = 0.01;             // as the contours' own deviation
 
 void jali_shell_free(jali_context *ctx, jali_shell *shell)
 {
@@ -60,21 +61,29 @@ static void place_between(const jali_shell *shell, int32_t vertex, int32_t level
     }
 }
 
-// On which of its two diagonals does the wall over the side from a to b give way to the solid on its left?
-static bool leans(const jali_shell *shell, int32_t a, int32_t b)
+// How the wall over the side from a to b is cut into triangles. Twice its twist is the difference of its two
+// diagonals' middles: it leans so that the triangles give way to the solid on its left, and is cut into
+// slices until they do so by no more than MOST_TWIST_MM.
+static void shape_wall(const jali_shell *shell, int32_t a, int32_t b, uint8_t *leans, uint8_t *slices)
 {
     const double *low_a = shell->inner[a], *low_b = shell->inner[b];
     const double *high_a = shell->outer.mesh.vertex[a], *high_b = shell->outer.mesh.vertex[b];
-    double along[3], up[3], right[3], between = 0;
+    double along[3], up[3], twist[3], right[3], across = 0, length = 0;
     for (int k = 0; k < 3; k++) {
         along[k] = low_b[k] + high_b[k] - low_a[k] - high_a[k];
         up[k] = high_a[k] + high_b[k] - low_a[k] - low_b[k];
+        twist[k] = (low_b[k] + high_a[k]) - (low_a[k] + high_b[k]);
     }
     for (int k = 0; k < 3; k++) {
         right[k] = along[(k + 1) % 3] * up[(k + 2) % 3] - along[(k + 2) % 3] * up[(k + 1) % 3];
-        between += right[k] * ((low_b[k] + high_a[k]) - (low_a[k] + high_b[k]));
+        across += right[k] * twist[k];
+        length += right[k] * right[k];
     }
-    return between > 0;
+    double away = length > 0 ? fabs(across) / sqrt(length) / 4 : 0; // of a triangle from the ruled surface
+    *leans = across > 0;
+    *slices = 0;
+    for (int cuts = 0; cuts < MOST_CUTS && away > MOST_TWIST_MM; cuts++, away /= 2)
+        *slices = (uint8_t)(LEVELS_LOG2 - cuts - 1);
 }
 
 jali_status jali_shell_solid(jali_context *ctx, const jali_shell *shell, jali_mesh *mesh)
@@ -85,7 +94,7 @@ jali_status jali_shell_solid(jali_context *ctx, const jali_shell *shell, jali_me
     sides linked = {0};
     prisms built = {0};
     interval *solid;
-    uint8_t *lean;
+    uint8_t *lean, *slices;
     int32_t stuck;
     *mesh = (jali_mesh){0};
     TRY(sides_create(ctx, outer->vertex_count, outer->triangle_count, (const int32_t(*)[3])outer->triangle,
@@ -95,9 +104,12 @@ jali_status jali_shell_solid(jali_context *ctx, const jali_shell *shell, jali_me
     TRY(ARENA(ctx, solid, linked.cell_count));
     fill_intervals(shell, linked.cell_count, solid);
     TRY(ARENA(ctx, lean, 4 * (size_t)linked.cell_count + 1));
+    TRY(ARENA(ctx, slices, 4 * (size_t)linked.cell_count + 1));
     for (int32_t s = 0; s < 4 * outer->triangle_count; s++)
-        lean[s] = (s & 3) != 3 && leans(shell, linked.corner[next_side(s)], linked.corner[last_side(s)]);
-    cells all = {outer->vertex_count, linked.cell_count, linked.corner, linked.beside, linked.star, lean};
+        if ((s & 3) != 3)
+            shape_wall(shell, linked.corner[next_side(s)], linked.corner[last_side(s)], &lean[s], &slices[s]);
+    cells all = {
+        outer->vertex_count, linked.cell_count, linked.corner, linked.beside, linked.star, lean, slices};
     TRY(build_prisms(ctx, &all, solid, &built));
     if (built.contact >= 0)
         TRY(refuse_vertex(ctx, shell, built.contact,
