@@ -4,6 +4,7 @@
 #include <jali/shell.h>
 
 #include "mesh/offset.h"
+#include "mesh/sides.h"
 
 #include <math.h>
 
@@ -38,6 +39,25 @@ static jali_status refuse_wall(jali_context *ctx, const jali_mesh *mesh, const j
         at[2]);
 }
 
+// Borders that meet in a vertex, or edges of three triangles, have no wall of their own.
+static jali_status check_manifold(jali_context *ctx, const jali_mesh *mesh)
+{
+    jali_status status;
+    sides linked = {0};
+    int32_t stuck;
+    TRY(sides_create(ctx, mesh->vertex_count, mesh->triangle_count, (const int32_t(*)[3])mesh->triangle,
+                     &linked));
+    TRY(sides_close(ctx, mesh->vertex_count, &linked, &stuck));
+    if (stuck >= 0)
+        status =
+            fail(ctx, JALI_BAD_INPUT,
+                 "the surface is not manifold: rims or more than two triangles meet at (%.2f, %.2f, %.2f) mm",
+                 mesh->vertex[stuck][0], mesh->vertex[stuck][1], mesh->vertex[stuck][2]);
+done:
+    sides_free(ctx, &linked);
+    return status;
+}
+
 jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const jali_shell_options *given,
                               jali_shell *shell, jali_shell_report *report)
 {
@@ -50,6 +70,7 @@ jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const ja
     if (!(opt.thickness_mm > 0) || !(opt.least_mm > 0) || !isfinite(opt.thickness_mm))
         TRY(fail(ctx, JALI_BAD_VALUE, "the wall's thickness and its least must be above 0 mm, not %g and %g",
                  opt.thickness_mm, opt.least_mm));
+    TRY(check_manifold(ctx, mesh));
     TRY(ALLOCATE(ctx, shell->inner, (size_t)mesh->vertex_count + 1));
     for (int32_t v = 0; v < mesh->vertex_count; v++)
         for (int k = 0; k < 3; k++)
