@@ -169,7 +169,7 @@ static void dilate_part(const part *t, const window *a, int32_t window_rows, win
         int32_t to = t->y0 + p->top + k, skip = MAX(-to, 0), count = MIN(rows, window_rows - to) - skip;
         if (count <= 0) continue;
         move_rows(of->left + skip, of->right + skip, moved.left, moved.right, count, -p->first[k]);
-        or_rows(painted->left + to + skip, painted->right + to + skip, moved.left, moved.right, count);
+        or_rows(painted->left + (to + skip), painted->right + (to + skip), moved.left, moved.right, count);
     }
 }
 
