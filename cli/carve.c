@@ -67,8 +67,8 @@ done:
 static jali_status write_everything(jali_context *ctx, const settings *set, const made *m)
 {
     jali_status status = JALI_OK;
-    jali_bytes bytes[MOST_OUTPUTS + 2] = {0};
-    output out[MOST_OUTPUTS + 2];
+    jali_bytes bytes[MOST_OUTPUTS + OUTPUTS_BESIDE] = {0};
+    output out[MOST_OUTPUTS + OUTPUTS_BESIDE];
     int32_t count = 0;
     for (int32_t i = 0; i < set->output_count; i++) {
         TRY(make_bytes(ctx, m, set->output[i], &bytes[count]));
@@ -85,9 +85,14 @@ static jali_status write_everything(jali_context *ctx, const settings *set, cons
         out[count] = (output){set->report, &bytes[count]};
         count++;
     }
+    if (set->render) {
+        TRY(render_png(ctx, &m->object.mesh, &set->view, set->size_px, &bytes[count]));
+        out[count] = (output){set->render, &bytes[count]};
+        count++;
+    }
     TRY(write_outputs(ctx, out, count));
 done:
-    for (int32_t i = 0; i < MOST_OUTPUTS + 2; i++) jali_bytes_free(ctx, &bytes[i]);
+    for (int32_t i = 0; i < MOST_OUTPUTS + OUTPUTS_BESIDE; i++) jali_bytes_free(ctx, &bytes[i]);
     return status;
 }
 

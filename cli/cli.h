@@ -24,15 +24,16 @@ typedef struct settings {
     const char *operand; // PICTURE, MODEL, NAME or KIND
     const char *output[MOST_OUTPUTS];
     int32_t output_count;
-    const char *json, *report;
+    const char *json, *report, *render; // files
     jali_read_options read;
-    jali_options make;       // of all stages
-    const char *surface;     // what to carve, as jali_surface_make takes it; NULL = a plate
-    jali_shell_options wall; // of a surface
-    double thickness_mm;     // of plate or wall; 0 = as usual for either
-    const char *job;         // file with the pictures of one surface
-    int32_t size_px;         // of a sample
-    bool skip_intersections; // of check
+    jali_options make;        // of all stages
+    const char *surface;      // what to carve, as jali_surface_make takes it; NULL = a plate
+    jali_shell_options wall;  // of a surface
+    double thickness_mm;      // of plate or wall; 0 = as usual for either
+    const char *job;          // file with the pictures of one surface
+    int32_t size_px;          // of a sample or a render
+    jali_render_options view; // of a render
+    bool skip_intersections;  // of check
     jali_context_options context;
     double max_memory_mb;
     int32_t progress; // progress_kind
@@ -49,11 +50,13 @@ typedef enum option_group {
     GROUP_SIZE = 32,    // size on the surface, printer
     GROUP_METHOD = 64,  // the image method
     GROUP_PLATE = 128,  // the solid
-    GROUP_SAMPLE = 256,
     GROUP_CHECK = 512,
     GROUP_RUN = 1024, // every verb
     GROUP_SURFACE = 2048,
     GROUP_JOB = 4096,
+    GROUP_RENDER = 8192, // a render beside other files
+    GROUP_VIEW = 16384,  // what a render shows
+    GROUP_SIDE = 32768,  // of a square picture
 } option_group;
 
 typedef struct verb {
@@ -72,7 +75,12 @@ jali_status run_list(jali_context *ctx, const settings *set);
 jali_status run_adapt(jali_context *ctx, const settings *set);
 jali_status run_carve(jali_context *ctx, const settings *set);
 jali_status run_check(jali_context *ctx, const settings *set);
+jali_status run_render(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
+
+/// Draw a mesh as the settings say, as a PNG; appended.
+jali_status render_png(jali_context *ctx, const jali_mesh *mesh, const jali_render_options *view,
+                       int32_t size_px, jali_bytes *png);
 
 /// The last part of a path, for people.
 const char *name_of(const char *path);

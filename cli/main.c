@@ -14,7 +14,8 @@ enum {
 
 static const verb verbs[] = {
     {"carve", "PICTURE", "carve a picture through a plate or a surface, ready to print",
-     IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JOB | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN,
+     IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JOB | GROUP_JSON | GROUP_REPORT | GROUP_RENDER | GROUP_VIEW |
+         GROUP_SIDE | OUTPUT_AND_RUN,
      ".3mf.stl.svg.dxf.png", run_carve},
     {"adapt", "PICTURE", "make the picture printable, and stop there",
      IMAGE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
@@ -22,8 +23,9 @@ static const verb verbs[] = {
      GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
     {"check", "MODEL", "is a model a solid: closed, manifold, outward, nowhere through itself",
      GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
-    {"sample", "NAME", "draw one of the built-in pictures", GROUP_SAMPLE | OUTPUT_AND_RUN, ".png",
-     run_sample},
+    {"render", "MODEL", "draw a model, by day or with a lamp inside",
+     GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_render},
+    {"sample", "NAME", "draw one of the built-in pictures", GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_sample},
     {"list", "KIND", "list what is built in: samples, surfaces", GROUP_RUN, "", run_list},
 };
 

@@ -117,7 +117,11 @@ static const option options[] = {
     {"job", "FILE", TEXT, GROUP_JOB, FIELD(job), 0, 0, 0,
      "several pictures on one surface, as JSON, in place of PICTURE (docs/job.md)"},
 
-    {"size", "PX", WHOLE, GROUP_SAMPLE, FIELD(size_px), 16, 32768, "px", "side of the picture (1000)"},
+    {"render", "FILE", TEXT, GROUP_RENDER, FIELD(render), 0, 0, 0, "draw the object as a PNG"},
+    {"lamp", NULL, FLAG, GROUP_VIEW, FIELD(view.lamp), 0, 0, 0, "draw it at night, with a lamp inside"},
+    {"view", "X,Y,Z", VECTOR, GROUP_VIEW, FIELD(view.view), 0, 0, 0,
+     "draw it as seen in this direction (from the front, the right and above)"},
+    {"size", "PX", WHOLE, GROUP_SIDE, FIELD(size_px), 16, 32768, "px", "side of the picture (1000)"},
     {"skip-intersections", NULL, FLAG, GROUP_CHECK, FIELD(skip_intersections), 0, 0, 0,
      "leave out the one costly test"},
 
@@ -144,6 +148,7 @@ settings default_settings(void)
         .wall = jali_shell_defaults(),
         .context = jali_context_defaults(),
         .size_px = 1000,
+        .view = jali_render_defaults(),
     };
     set.make.place.width_mm = 0; // 70 stands unless a height is given
     return set;

@@ -54,7 +54,7 @@ static bool check_output(const verb *v, const settings *set, const char *path, c
     return false;
 }
 
-static bool check_text_output(const settings *set, const char *path, char *sentence)
+static bool check_output_beside(const settings *set, const char *path, char *sentence)
 {
     struct stat old;
     if (!path || strcmp(path, "-") == 0) return true;
@@ -69,16 +69,17 @@ static bool check_text_output(const settings *set, const char *path, char *sente
 
 bool check_outputs(const verb *v, const settings *set, char *sentence)
 {
-    const char *path[MOST_OUTPUTS + 2];
+    const char *path[MOST_OUTPUTS + OUTPUTS_BESIDE];
     int32_t count = 0;
     for (int32_t i = 0; i < set->output_count; i++) {
         if (!check_output(v, set, set->output[i], sentence)) return false;
         path[count++] = set->output[i];
     }
-    if (!check_text_output(set, set->json, sentence) || !check_text_output(set, set->report, sentence))
-        return false;
-    if (set->json) path[count++] = set->json;
-    if (set->report) path[count++] = set->report;
+    const char *const beside[] = {set->json, set->report, set->render};
+    for (int32_t i = 0; i < OUTPUTS_BESIDE; i++) {
+        if (!check_output_beside(set, beside[i], sentence)) return false;
+        if (beside[i]) path[count++] = beside[i];
+    }
     for (int32_t i = 0; i < count; i++)
         for (int32_t k = 0; k < i; k++)
             if (same_file(path[i], path[k])) {
@@ -91,7 +92,7 @@ bool check_outputs(const verb *v, const settings *set, char *sentence)
 jali_status write_outputs(jali_context *ctx, const output *out, int32_t count)
 {
     jali_status status = JALI_OK;
-    output_file file[MOST_OUTPUTS + 2] = {0};
+    output_file file[MOST_OUTPUTS + OUTPUTS_BESIDE] = {0};
     for (int32_t i = 0; i < count; i++) TRY(output_open(ctx, out[i].path, &file[i]));
     for (int32_t i = 0; i < count; i++)
         TRY(output_write(ctx, &file[i], out[i].bytes->data, out[i].bytes->size));

@@ -4,6 +4,8 @@
 
 #include "cli.h"
 
+enum { OUTPUTS_BESIDE = 3 }; // figures, report, render
+
 /// Suffixes the verb knows, no file named twice, none that exists (unless --force-overwrite), none the input.
 ///   out    sentence  what is wrong, when false comes back
 bool check_outputs(const verb *v, const settings *set, char *sentence);

@@ -7,7 +7,7 @@
 
 #include <jali/png.h>
 
-enum { MOST_MAP_PX = 1400, THUMBNAIL_PX = 480 };
+enum { MOST_MAP_PX = 1400, RENDER_PX = 640 };
 
 typedef struct rgb {
     uint8_t red, green, blue;
@@ -123,18 +123,31 @@ done:
     return status;
 }
 
-static jali_status append_thumbnail(jali_context *ctx, const jali_mesh *mesh, jali_bytes *html)
+static jali_status append_render(jali_context *ctx, const jali_mesh *mesh, const jali_render_options *view,
+                                 const char *title, jali_bytes *html)
 {
     jali_status status;
-    uint8_t *pixels = NULL;
     jali_bytes png = {0};
-    TRY(ALLOCATE(ctx, pixels, THUMBNAIL_PX * THUMBNAIL_PX * 3));
-    TRY(jali_thumbnail(ctx, mesh, THUMBNAIL_PX, pixels));
-    TRY(jali_rgb_png(ctx, THUMBNAIL_PX, THUMBNAIL_PX, pixels, &png));
-    TRY(append_figure(ctx, &png, "The object", "", html));
+    TRY(render_png(ctx, mesh, view, RENDER_PX, &png));
+    TRY(append_figure(ctx, &png, title, "", html));
 done:
     jali_bytes_free(ctx, &png);
-    release(ctx, pixels);
+    return status;
+}
+
+// By day from where the first picture is seen, a little from above; at night from the usual side.
+static jali_status append_renders(jali_context *ctx, const made *m, jali_bytes *html)
+{
+    jali_status status;
+    jali_render_options day = jali_render_defaults(), night = jali_render_defaults();
+    const double *seen = m->result[0].placed.direction;
+    bool projected = m->set[0].surface && m->result[0].placed.placing == JALI_PLACE_PROJECT;
+    if (projected)
+        for (int k = 0; k < 3; k++) day.view[k] = night.view[k] = seen[k] - (k == 2 ? 0.25 : 0);
+    night.lamp = true;
+    TRY(append_render(ctx, &m->object.mesh, &day, "The object", html));
+    TRY(append_render(ctx, &m->object.mesh, &night, "With a lamp", html));
+done:
     return status;
 }
 
@@ -269,7 +282,7 @@ static jali_status append_object(jali_context *ctx, const made *m, jali_bytes *h
     }
     TRY(bytes_print(ctx, html, "<p>%d triangles, %.4g cm<sup>3</sup>.</p><main>\n",
                     m->object.mesh.triangle_count, m->object.check.volume_mm3 / 1000));
-    TRY(append_thumbnail(ctx, &m->object.mesh, html));
+    TRY(append_renders(ctx, m, html));
     TRY(bytes_print(ctx, html, "</main>"));
 done:
     return status;

@@ -270,20 +270,6 @@ TEST(a_png_holds_the_bitmap)
     }
 }
 
-TEST(a_thumbnail_shows_solid_and_holes)
-{
-    jali_mesh plate = pierced_plate(3, 10, 0);
-    uint8_t rgb[64 * 64 * 3];
-    CHECK_OK(jali_thumbnail(ctx, &plate, 64, rgb));
-    const uint8_t *corner = rgb, *hole = rgb + 3 * (32 * 64 + 32);
-    CHECK(corner[0] < 80 && hole[0] < 160);
-    int32_t light = 0;
-    for (int32_t i = 0; i < 64 * 64; i++) light += rgb[3 * i] > 180;
-    CHECK(light > 64 * 64 / 5 && light < 64 * 64 * 3 / 4);
-    CHECK_STATUS(jali_thumbnail(ctx, &plate, 5000, rgb), JALI_BAD_VALUE);
-    jali_mesh_free(ctx, &plate);
-}
-
 TEST(a_failed_write_leaves_the_earlier_file)
 {
     const char *path = in_folder("kept.stl");
@@ -413,7 +399,6 @@ int main(void)
         RUN(outside_programs_read_the_files),
         RUN(flat_formats_say_what_they_should),
         RUN(a_png_holds_the_bitmap),
-        RUN(a_thumbnail_shows_solid_and_holes),
         RUN(a_failed_write_leaves_the_earlier_file),
         RUN(an_unwritable_place_is_a_sentence),
         RUN(a_full_disk_leaves_the_earlier_file),

@@ -29,6 +29,7 @@
 #include <jali/png.h>
 #include <jali/predict.h>
 #include <jali/read.h>
+#include <jali/render.h>
 #include <jali/sample.h>
 #include <jali/shell.h>
 #include <jali/surface.h>

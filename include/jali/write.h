@@ -71,11 +71,6 @@ JALI_API jali_status jali_write_svg(jali_context *ctx, const jali_contours *cont
 /// DXF (R12): a closed polyline a contour in mm, on the layers OUTLINE (around solid) and HOLES.
 JALI_API jali_status jali_write_dxf(jali_context *ctx, const jali_contours *contours, jali_bytes *bytes);
 
-/// A small picture of a mesh, seen from above and a little from the front.
-///   in     size_px   of its side, 16 .. 1024
-///   out    rgb       [size_px * size_px * 3], written whole
-JALI_API jali_status jali_thumbnail(jali_context *ctx, const jali_mesh *mesh, int32_t size_px, uint8_t *rgb);
-
 #ifdef __cplusplus
 }
 #endif

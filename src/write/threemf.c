@@ -5,6 +5,7 @@
 //          together in order: the bytes do not depend on the threads.
 // Checked: tests/test_write.c (read back, xmllint, unzip); PrusaSlicer opens it.
 #include <jali/png.h>
+#include <jali/render.h>
 #include <jali/write.h>
 
 #include "base/number.h"
@@ -150,8 +151,11 @@ static jali_status write_thumbnail(jali_context *ctx, const jali_mesh *mesh, jal
 {
     jali_status status;
     uint8_t *rgb = NULL;
+    jali_render_options opt = jali_render_defaults();
+    opt.width_px = opt.height_px = THUMBNAIL_PX;
+    opt.draft = true;
     TRY(ALLOCATE(ctx, rgb, 3 * THUMBNAIL_PX * THUMBNAIL_PX));
-    TRY(jali_thumbnail(ctx, mesh, THUMBNAIL_PX, rgb));
+    TRY(jali_render(ctx, mesh, &opt, rgb));
     TRY(jali_rgb_png(ctx, THUMBNAIL_PX, THUMBNAIL_PX, rgb, png));
 done:
     release(ctx, rgb);
