@@ -44,25 +44,6 @@ typedef struct settings {
     const char *wanted[MOST_NAMES];
 } settings;
 
-double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-double median(double *ms, int32_t count)
-{
-    qsort(ms, (size_t)count, sizeof *ms, by_value);
-    return count % 2 ? ms[count / 2] : (ms[count / 2 - 1] + ms[count / 2]) / 2;
-}
-
 static bool is_wanted(const settings *set, const bench_case *c)
 {
     for (int32_t i = 0; i < set->wanted_count; i++)

@@ -73,7 +73,7 @@ typedef struct jali_placed {
 ///   in     surface   its faces inside the picture and its frame must be free of faults
 ///          opt       NULL means the defaults; frame_mm is the protected zone around the picture, which the
 ///                    surface must have and which stays solid
-///   out    chart     with the metric; free with jali_chart_free
+///   out    chart     with the metric where lengths differ by more than 0.5 %; free with jali_chart_free
 ///          patch     the faces under the picture
 ///          drawing   margin included
 ///          placed    may be NULL

@@ -7,6 +7,7 @@
 
 #include <math.h>
 
+static const float FLATNESS = 0.005F; // of lengths: a hundredth of a pixel in a narrow width
 enum { STEP_PX = 16, SAMPLES = 4 };
 
 // Eigenvalues of the metric are the squared stretches.
@@ -79,6 +80,17 @@ static void fill_empty(jali_chart *chart, int32_t empty)
     }
 }
 
+// True when every length is as in the plane, but for FLATNESS: unrolled cylinders and cones.
+static bool is_flat(const jali_chart *chart)
+{
+    for (int32_t i = 0; i < chart->metric_columns * chart->metric_rows; i++) {
+        const float *g = chart->metric[i];
+        if (fabsf(g[0] - 1) > 2 * FLATNESS || fabsf(g[1]) > FLATNESS || fabsf(g[2] - 1) > 2 * FLATNESS)
+            return false;
+    }
+    return true;
+}
+
 jali_status fill_metric(jali_context *ctx, const laid *l, const growth *g, jali_chart *chart,
                         double stretch[2])
 {
@@ -100,6 +112,11 @@ jali_status fill_metric(jali_context *ctx, const laid *l, const growth *g, jali_
     stretch[0] = INFINITY;
     stretch[1] = 0;
     fill_empty(chart, average(l, &v, chart, stretch));
+    if (is_flat(chart)) { // then the image stages need not look at each place
+        release(ctx, chart->metric);
+        chart->metric = NULL;
+        chart->metric_columns = chart->metric_rows = chart->metric_step_px = 0;
+    }
 done:
     arena_rewind(ctx, mark);
     return status;
