@@ -47,9 +47,31 @@ for name in $pictures; do
         "$(figure "$out/$name.json" triangles)"
     row "$name" "$("$jali" list samples | sed -n "s/^$name  *//p")" >> "$out/index.html"
 done
+
 echo
-echo "  jali check, on the last one as a slicer would read it:"
-"$jali" check "$out/$name.3mf" 2>&1 | sed 's/^/    /'
+echo "  And through surfaces, the widths true in mm on them:"
+echo
+printf '  %-26s %-34s %-14s %s\n' what surface 'stretched' 'the solid'
+# carve_on NAME WIDTH SURFACE [OPTION ...]
+carve_on() {
+    name=$1 width=$2 surface=$3
+    shift 3
+    "$jali" carve "$out/$name.png" --surface "$surface" --width "$width" --force-overwrite --quiet \
+        -o "$out/$name-object.3mf" --report "$out/$name-object.html" --json "$out/$name-object.json" "$@"
+    printf '  %-26s %-34s %-14s %s triangles, closed, one piece\n' "$name, $width mm" "$surface $*" \
+        "$(awk '/"stretch"/ { getline a; getline b; gsub(/[ ,]/, "", a); gsub(/[ ,]/, "", b); printf "%.2f .. %.2f", a, b }' \
+            "$out/$name-object.json")" "$(figure "$out/$name-object.json" triangles)"
+    cat >> "$out/index.html" <<ROW
+<p>$name on $surface: <a href="$name-object.html">report</a> <a href="$name-object.3mf">3mf</a></p>
+ROW
+}
+carve_on girih 50 cylinder:r=32,h=70 --repeat 3
+carve_on tree 60 vase:h=150
+carve_on mask 34 sphere:r=30 --place project
+
+echo
+echo "  jali check, on the last plate as a slicer would read it:"
+"$jali" check "$out/sunflower.3mf" 2>&1 | sed 's/^/    /'
 here=$(cd "$out" && pwd)
 cat <<END
 
