@@ -48,8 +48,9 @@ static jali_status make_bytes(jali_context *ctx, const made *m, const char *path
     jali_write_options opt = jali_write_defaults();
     bool flat = format == JALI_FORMAT_PNG || format == JALI_FORMAT_SVG || format == JALI_FORMAT_DXF;
     if (flat && m->count > 1)
-        return fail(ctx, JALI_BAD_VALUE, "%s shows one picture and the job has %d; 3MF and STL hold them all",
-                    path, m->count);
+        return fail(ctx, JALI_BAD_VALUE,
+                    "%s shows one picture and the job has %d; 3MF and STL are there to hold them all", path,
+                    m->count);
     TRY(describe(ctx, set, r, &parameters));
     if (format == JALI_FORMAT_PNG) TRY(without_margin(ctx, &r->optimised.mask, r->chart.margin_px, &picture));
     opt.title = name_of(set->operand);

@@ -18,7 +18,7 @@ static const verb verbs[] = {
          GROUP_SIDE | OUTPUT_AND_RUN,
      ".3mf.stl.svg.dxf.png", run_carve},
     {"adapt", "PICTURE", "make the picture printable, and stop there",
-     IMAGE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
+     IMAGE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
      GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
     {"check", "MODEL", "is a model a solid: closed, manifold, outward, nowhere through itself",

@@ -159,9 +159,74 @@ TEST(bad_pictures_are_rejected)
     CHECK(access("a.png", F_OK) != 0);
 }
 
+static void write_job(const char *text)
+{
+    write_text("job.json", text, strlen(text));
+}
+
+TEST(surfaces_and_jobs_are_refused_with_a_sentence)
+{
+    write_text("half.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", 27);
+    run("carve two.pbm -o a.3mf --surface", 2, "needs a value (SHAPE|FILE)");
+    run("carve two.pbm -o a.3mf --surface vaze", 2, "there are plate, cylinder, cone, sphere and vase");
+    run("carve two.pbm -o a.3mf --surface cylinder:r=-5,h=20", 2, "-5");
+    run("carve two.pbm -o a.3mf --surface missing.obj", 1, "missing.obj");
+    run("carve two.pbm -o a.3mf --surface half.obj", 4, "half.obj");
+    run("carve two.pbm -o a.3mf --surface sphere:r=20 --place there", 2, "auto, project or wrap");
+    run("carve two.pbm -o a.3mf --surface sphere:r=20 --at 1,2", 2, "three numbers");
+    run("carve two.pbm -o a.3mf --surface sphere:r=20 --dir 1,2,nan", 2, "three numbers");
+    run("carve two.pbm -o a.3mf --surface sphere:r=20 --camera to=1,2,3", 2, "where the eye is");
+    run("carve two.pbm -o a.3mf --surface sphere:r=20 --camera from=1,2,3,fov=190", 2, "fov=DEGREES");
+    run("carve two.pbm -o a.3mf --surface sphere:r=20 --repeat 0", 2, "1 .. 1000");
+    run("carve two.pbm -o a.3mf --surface sphere:r=20 --width 70 --place project", 1, "a width of");
+    run("carve two.pbm -o a.3mf --job job.json", 2, "one too many");
+    run("carve --job nowhere.json -o a.3mf", 1, "No such file");
+    write_job("{\"version\":1");
+    run("carve --job job.json -o a.3mf", 4, "no JSON object");
+    write_job("{\"version\":2,\"surface\":\"vase\",\"pictures\":[]}");
+    run("carve --job job.json -o a.3mf", 4, "\"version\": 1");
+    write_job("{\"version\":1,\"pictures\":[]}");
+    run("carve --job job.json -o a.3mf", 4, "\"surface\"");
+    write_job("{\"version\":1,\"surface\":\"vase\",\"pictures\":[]}");
+    run("carve --job job.json -o a.3mf", 4, "0 \"pictures\"");
+    write_job("{\"version\":1,\"surface\":\"vase\",\"pictures\":[{\"width\":3}]}");
+    run("carve --job job.json -o a.3mf", 4, "has no \"picture\"");
+    write_job("{\"version\":1,\"surface\":\"vase\",\"pictures\":[{\"picture\":\"two.pbm\",\"widht\":3}]}");
+    run("carve --job job.json -o a.3mf", 4, "no option \"widht\"");
+    write_job("{\"version\":1,\"surface\":\"vase\",\"pictures\":[{\"picture\":\"two.pbm\",\"width\":{}}]}");
+    run("carve --job job.json -o a.3mf", 4, "no text, number, true or list");
+    CHECK(access("a.3mf", F_OK) != 0);
+}
+
 static void write_sample(void)
 {
     if (access("rings.png", F_OK) != 0) run("sample rings -o rings.png --size 300", 0, "");
+}
+
+TEST(pictures_are_carved_through_a_surface)
+{
+    write_sample();
+    run("carve rings.png --surface cylinder:r=20,h=50 --repeat 3 --height 30 --backing 0.5 -o tube.3mf "
+        "--json tube.json",
+        0, "closed and manifold");
+    run("check tube.3mf", 0, "");
+    CHECK(strstr(printed, "1 piece, 1 hole through")); // a film closes the voids
+    char json[TEXT_BYTES];
+    read_text("tube.json", json);
+    CHECK(strstr(json, "\"placing\": \"wrap\"") && strstr(json, "\"thickness_mm\": 2.0"));
+    write_job(
+        "{\"version\":1,\"surface\":\"vase:h=80,r=30\",\"thickness\":\"1.5mm\",\"pictures\":["
+        "{\"picture\":\"rings.png\",\"width\":25},"
+        "{\"picture\":\"rings.png\",\"width\":20,\"place\":\"project\",\"dir\":[0,-1,0],\"invert\":true}]}");
+    run("carve --job job.json -o vase.stl -o vase.3mf --json vase.json --report vase.html", 0,
+        "closed and manifold");
+    run("check vase.stl", 0, "");
+    CHECK(strstr(printed, "is a solid"));
+    run("carve --job job.json -o vase.svg", 2, "hold them all");
+    write_job("{\"version\":1,\"surface\":\"vase:h=80,r=30\",\"pictures\":["
+              "{\"picture\":\"rings.png\",\"width\":25},{\"picture\":\"rings.png\",\"width\":20}]}");
+    run("carve --job job.json -o both.stl", 1, "ends within"); // on top of each other
+    CHECK(access("both.stl", F_OK) != 0);
 }
 
 TEST(a_picture_is_carved)
@@ -309,11 +374,21 @@ TEST(svg_is_drawn_where_it_is_built_in)
     run("place void.svg -o void.png", 4, "void.svg");
 }
 
+// Asleep at several looks in a row, in the program itself and no longer in the shell: it reads.
 static void wait_until_it_reads(pid_t child)
 {
-    (void)child;
-    struct timespec while_it_starts = {0, 700000000};
-    nanosleep(&while_it_starts, NULL);
+    enum { LOOKS = 5, MOST_LOOKS = 1000 };
+    struct timespec pause = {0, 20000000};
+    for (int32_t looks = 0, asleep = 0; looks < MOST_LOOKS && asleep < LOOKS; looks++) {
+        char path[64], stat[512] = "", *after;
+        snprintf(path, sizeof path, "/proc/%d/stat", (int)child);
+        nanosleep(&pause, NULL);
+        read_text(path, said);
+        snprintf(stat, sizeof stat, "%.500s", said);
+        after = strrchr(stat, ')'); // pid (name) state
+        bool program = strstr(stat, "(jali)") != NULL;
+        asleep = program && after && after[2] == 'S' ? asleep + 1 : 0;
+    }
 }
 
 // The program waits for its standard input, which nobody closes, and is then interrupted.
@@ -348,6 +423,8 @@ int main(void)
         cmocka_unit_test(usage_is_checked_before_anything_is_done),
         cmocka_unit_test(numbers_are_numbers_in_their_range),
         cmocka_unit_test(bad_pictures_are_rejected),
+        cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),
+        cmocka_unit_test(pictures_are_carved_through_a_surface),
         cmocka_unit_test(a_picture_is_carved),
         cmocka_unit_test(a_picture_is_adapted),
         cmocka_unit_test(threads_do_not_change_a_file),
