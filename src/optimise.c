@@ -353,8 +353,11 @@ jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const j
 {
     jali_status status;
     optimising o = {.chart = chart, .opt = given ? *given : jali_optimise_defaults(), .result = result};
+    jali_elements *elements = NULL;
     *result = (jali_optimised){0};
     TRY(prepare(ctx, &o));
+    TRY(jali_elements_create(ctx, &o.widths, drawing->width_px, drawing->height_px, &elements));
+    o.widths.elements = elements;
     TRY(o.opt.paper ? by_the_paper(ctx, &o, drawing, &result->mask)
                     : by_design_of_the_print(ctx, &o, drawing, &result->mask));
     TRY(finish(ctx, &o, &result->mask));
@@ -362,5 +365,6 @@ jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const j
     TRY(count_residual(ctx, &o, &result->mask));
 done:
     if (status != JALI_OK) jali_optimised_free(ctx, result);
+    jali_elements_free(ctx, elements);
     return status;
 }

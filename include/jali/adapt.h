@@ -23,6 +23,8 @@ typedef struct jali_adapt_options {
     const jali_chart *chart; // with a metric: the lengths here are on the surface, in units of the flat
                              // pixel, and the elements vary over the picture (docs/metric.md); discs only.
                              // NULL (default): flat
+    const struct jali_elements *elements; // what jali_elements_create made of these very options, so that
+                                          // each call need not again. NULL (default): it does
     int32_t growth_px; // omega_c: what the printer adds to a solid's width, plus 1; odd (default 1)
     // jali_adapt_print alone:
     double axis_worth_white; // what a lost pixel of a detail's axis weighs, as a share of the narrowest
@@ -33,6 +35,16 @@ typedef struct jali_adapt_options {
 } jali_adapt_options;
 
 JALI_API jali_adapt_options jali_adapt_defaults(void);
+
+/// The elements of a curved surface, to be shared by all calls with the same options.
+typedef struct jali_elements jali_elements;
+
+/// Prepare the elements for pictures of a size.
+///   out    elements   NULL where the chart is flat: there is nothing to prepare
+///   fails  JALI_NO_MEMORY, JALI_BAD_VALUE (widths; a metric that is none)
+JALI_API jali_status jali_elements_create(jali_context *ctx, const jali_adapt_options *opt, int32_t width_px,
+                                          int32_t height_px, jali_elements **elements);
+JALI_API void jali_elements_free(jali_context *ctx, jali_elements *elements);
 
 enum { JALI_TYPE_A, JALI_TYPE_B, JALI_TYPE_C, JALI_TYPES };
 

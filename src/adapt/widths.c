@@ -159,12 +159,32 @@ done:
     return status;
 }
 
+struct jali_elements {
+    jali_adapt_options made_for;
+    int32_t width_px, height_px;
+    widths mask, print;
+};
+
+// Whether the prepared elements are those that are asked for.
+static bool are_prepared(const jali_adapt_options *opt, const jali_bitmap *grid, int32_t pad_px)
+{
+    const jali_elements *e = opt->elements;
+    return e && pad_px == 0 && e->width_px == grid->width_px && e->height_px == grid->height_px &&
+           e->made_for.chart == opt->chart && e->made_for.solid_px == opt->solid_px &&
+           e->made_for.void_px == opt->void_px && e->made_for.growth_px == opt->growth_px;
+}
+
 static jali_status make_widths(jali_context *ctx, const jali_adapt_options *opt, const jali_bitmap *grid,
                                int32_t pad_px, bool in_print, widths *w)
 {
     jali_status status;
     *w = (widths){0};
     TRY(check_widths(ctx, opt));
+    if (are_prepared(opt, grid, pad_px)) {
+        *w = in_print ? opt->elements->print : opt->elements->mask;
+        w->borrowed = true;
+        return JALI_OK;
+    }
     TRY(tiling_create(ctx, opt->chart, grid->width_px, grid->height_px, pad_px, pad_px, 1, &w->tiles));
     if (!is_flat(&w->tiles))
         TRY(curved(ctx, opt, in_print, w));
@@ -189,9 +209,42 @@ jali_status printed_widths(jali_context *ctx, const jali_adapt_options *opt, con
 
 void widths_free(jali_context *ctx, widths *w)
 {
-    field_free(ctx, &w->solid);
-    field_free(ctx, &w->hollow);
-    tiling_free(ctx, &w->tiles);
+    if (!w->borrowed) {
+        field_free(ctx, &w->solid);
+        field_free(ctx, &w->hollow);
+        tiling_free(ctx, &w->tiles);
+    }
+    *w = (widths){0};
+}
+
+jali_status jali_elements_create(jali_context *ctx, const jali_adapt_options *opt, int32_t width_px,
+                                 int32_t height_px, jali_elements **elements)
+{
+    jali_status status;
+    jali_elements *e = NULL;
+    jali_bitmap grid = {.width_px = width_px, .height_px = height_px};
+    *elements = NULL;
+    if (!opt->chart || !opt->chart->metric) return JALI_OK;
+    TRY(ALLOCATE_CLEARED(ctx, e, 1));
+    e->made_for = *opt;
+    e->made_for.elements = NULL;
+    e->width_px = width_px;
+    e->height_px = height_px;
+    TRY(mask_widths(ctx, &e->made_for, &grid, 0, &e->mask));
+    TRY(printed_widths(ctx, &e->made_for, &grid, 0, &e->print));
+    *elements = e;
+    e = NULL;
+done:
+    jali_elements_free(ctx, e);
+    return status;
+}
+
+void jali_elements_free(jali_context *ctx, jali_elements *elements)
+{
+    if (!elements) return;
+    widths_free(ctx, &elements->mask);
+    widths_free(ctx, &elements->print);
+    release(ctx, elements);
 }
 
 int64_t axis_worth_units(const jali_adapt_options *opt, bool white, int32_t solid_px, int32_t void_px)

@@ -9,6 +9,7 @@
 typedef struct widths {
     tiling tiles;
     field solid, hollow; // they point to `tiles`: a struct of this type stays where it was made
+    bool borrowed;       // from opt->elements
 } widths;
 
 /// In the mask.
