@@ -37,6 +37,7 @@ jali_status run_check(jali_context *ctx, const settings *set)
     jali_check_report report;
     jali_check_options opt = jali_check_defaults();
     opt.skip_intersections = set->skip_intersections;
+    opt.walls = set->walls;
     TRY(jali_read_model(ctx, set->operand, NULL, &mesh));
     TRY(jali_check(ctx, &mesh, &opt, &report));
     TRY(tell(ctx, set, &report));

@@ -26,14 +26,14 @@ typedef struct settings {
     int32_t output_count;
     const char *json, *report, *render; // files
     jali_read_options read;
-    jali_options make;        // of all stages
-    const char *surface;      // what to carve, as jali_surface_make takes it; NULL = a plate
-    jali_shell_options wall;  // of a surface
-    double thickness_mm;      // of plate or wall; 0 = as usual for either
-    const char *job;          // file with the pictures of one surface
-    int32_t size_px;          // of a sample or a render
-    jali_render_options view; // of a render
-    bool skip_intersections;  // of check
+    jali_options make;              // of all stages
+    const char *surface;            // what to carve, as jali_surface_make takes it; NULL = a plate
+    jali_shell_options wall;        // of a surface
+    double thickness_mm;            // of plate or wall; 0 = as usual for either
+    const char *job;                // file with the pictures of one surface
+    int32_t size_px;                // of a sample or a render
+    jali_render_options view;       // of a render
+    bool skip_intersections, walls; // of check
     jali_context_options context;
     double max_memory_mb;
     int32_t progress; // progress_kind

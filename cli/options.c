@@ -124,6 +124,8 @@ static const option options[] = {
     {"size", "PX", WHOLE, GROUP_SIDE, FIELD(size_px), 16, 32768, "px", "side of the picture (1000)"},
     {"skip-intersections", NULL, FLAG, GROUP_CHECK, FIELD(skip_intersections), 0, 0, 0,
      "leave out the one costly test"},
+    {"walls", NULL, FLAG, GROUP_CHECK, FIELD(walls), 0, 0, 0,
+     "measure the thinnest wall and the narrowest gap as well"},
 
     {"threads", "N", WHOLE, GROUP_RUN, FIELD(context.threads), 1, 1024, 0,
      "threads to use; never changes a result (all)"},

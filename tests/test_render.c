@@ -48,7 +48,7 @@ TEST(rays_meet_a_box_where_the_formula_says)
     jali_mesh_free(ctx, &block);
 }
 
-// One leaf holds no tree: a torus of 2,000 triangles against the test of each of them, alone in a scene.
+// A torus of 2,000 triangles against the test of each of them, alone in a scene.
 TEST(the_walk_finds_what_a_search_of_all_triangles_finds)
 {
     jali_mesh mesh = torus(50, 20);
@@ -96,7 +96,7 @@ TEST(no_ray_slips_between_triangles)
     jali_mesh_free(ctx, &mesh);
 }
 
-// A ball of radius 1 seen from afar covers the discs that the camera's formula gives; shadows fall to one
+// Every vertex is inside the frame and some touch it; the hole of a torus shows the ground.
 // side.
 TEST(the_whole_object_is_in_the_picture)
 {

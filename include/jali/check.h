@@ -11,9 +11,20 @@ extern "C" {
 
 typedef struct jali_check_options {
     bool skip_intersections; // leave out the one costly test; then `solid` says nothing of it. Default false
+    bool walls; // measure walls and gaps as well, of a mesh that is closed and outward. Default false
 } jali_check_options;
 
 JALI_API jali_check_options jali_check_defaults(void);
+
+/// How thick the walls are, or how wide the gaps, as balls that fit between two sides that face each other
+/// within 20 degrees (docs/check.md).
+typedef struct jali_thickness {
+    bool measured;      // false: nobody looked, or the mesh has no inside; then the rest is 0
+    double thinnest_mm; // smallest reading; INFINITY: there is none (of gaps: none below 10 mm)
+    double at_mm[3];    // its place, in the middle of the wall or gap; 0 when there is none
+    double
+        percentile1_mm; // 1 % of the area that has a reading has none above this; INFINITY when there is none
+} jali_thickness;
 
 /// Vertices at exactly the same place count as one, so a triangle soup is judged by its geometry.
 typedef struct jali_check_report {
@@ -46,8 +57,9 @@ typedef struct jali_check_report {
     double volume_mm3; // signed; of a mesh that is not closed it means little
     double area_mm2;
     double low_mm[3], high_mm[3]; // bounding box
-    int32_t unit_log2;            // the tests ran on whole multiples of 2^unit_log2 mm,
-    bool coordinates_exact;       // which hold every coordinate exactly (else: rounded to 60 bits)
+    jali_thickness walls, gaps;
+    int32_t unit_log2;      // the tests ran on whole multiples of 2^unit_log2 mm,
+    bool coordinates_exact; // which hold every coordinate exactly (else: rounded to 60 bits)
 } jali_check_report;
 
 /// Check a mesh. What is wrong with it is in the report, not in the status.
@@ -75,6 +87,9 @@ JALI_API jali_status jali_check_sentences(jali_context *ctx, const jali_check_re
 ///                      self_intersections is null when the test was left out
 ///   volume_mm3, area_mm2   numbers
 ///   bounds_mm          {"low": [x, y, z], "high": [x, y, z]}
+///   walls, gaps        {"thinnest_mm", "at_mm": [x, y, z], "percentile1_mm"}, numbers or null where there is
+///   none;
+///                      null when they were not measured
 ///   unit_mm            the lattice of the exact tests
 ///   coordinates_exact  boolean
 JALI_API jali_status jali_check_json(jali_context *ctx, const jali_check_report *report, jali_bytes *json);

@@ -8,6 +8,7 @@
 // Checked: tests/test_check.c; admesh and PrusaSlicer agree on the meshes of the test data.
 #include <jali/check.h>
 
+#include "check/walls.h"
 #include "mesh/nesting.h"
 
 #include <math.h>
@@ -184,6 +185,8 @@ jali_status jali_check(jali_context *ctx, const jali_mesh *mesh, const jali_chec
     if (!opt.skip_intersections) TRY(count_intersections(ctx, &s, NULL, &crossings, &r.intersections_capped));
     r.intersections = found_at_pair(mesh, &crossings);
     conclude(&r);
+    if (opt.walls && r.closed && r.oriented && r.triangles > 0)
+        TRY(measure_walls(ctx, mesh, &r.walls, &r.gaps));
     *report = r;
 done:
     exact_surface_free(ctx, &s);

@@ -21,6 +21,19 @@ static jali_status say_flaw(jali_context *ctx, const flaw *f, const char *at_lea
                        f->found->count == 1 ? "it is" : "the first is", at[0], at[1], at[2]);
 }
 
+static jali_status say_thickness(jali_context *ctx, const jali_thickness *t, const char *what,
+                                 const char *how, jali_bytes *text)
+{
+    const double *at = t->at_mm;
+    if (!t->measured) return JALI_OK;
+    if (!(t->thinnest_mm < INFINITY)) return bytes_print(ctx, text, "There is no %s to measure.\n", what);
+    return bytes_print(
+        ctx, text,
+        "The %s %s measures %.3g mm, at (%.5g, %.5g, %.5g) mm; the %s hundredth of all up to %.3g "
+        "mm.\n",
+        how, what, t->thinnest_mm, at[0], at[1], at[2], how, t->percentile1_mm);
+}
+
 static jali_status say_measures(jali_context *ctx, const jali_check_report *r, jali_bytes *text)
 {
     jali_status status;
@@ -37,6 +50,8 @@ static jali_status say_measures(jali_context *ctx, const jali_check_report *r, j
         TRY(bytes_print(ctx, text,
                         "%d vertices stand at the place of an earlier one and were taken as one.\n",
                         r->repeated_vertices));
+    TRY(say_thickness(ctx, &r->walls, "wall", "thinnest", text));
+    TRY(say_thickness(ctx, &r->gaps, "gap", "narrowest", text));
     if (!r->coordinates_exact)
         TRY(bytes_print(ctx, text, "The coordinates span more than 60 bits and were rounded to %.3g mm.\n",
                         ldexp(1, r->unit_log2)));
@@ -88,6 +103,15 @@ static json_t *json_finding(const jali_finding *f, bool at_least)
     return object;
 }
 
+static json_t *json_thickness(const jali_thickness *t)
+{
+    if (!t->measured) return json_null();
+    if (!(t->thinnest_mm < INFINITY))
+        return json_pack("{sn sn sn}", "thinnest_mm", "at_mm", "percentile1_mm");
+    return json_pack("{sf so sf}", "thinnest_mm", t->thinnest_mm, "at_mm", json_point(t->at_mm),
+                     "percentile1_mm", t->percentile1_mm);
+}
+
 // NULL when memory runs out anywhere: half a report would pass for a whole one.
 static json_t *json_report(const jali_check_report *r)
 {
@@ -123,6 +147,8 @@ static json_t *json_report(const jali_check_report *r)
         r->intersections_skipped ? json_null() : json_finding(&r->intersections, r->intersections_capped);
     whole &= json_object_set_new(o, "self_intersections", crossings) == 0;
     whole &= json_object_update(o, measures) == 0;
+    whole &= json_object_set_new(o, "walls", json_thickness(&r->walls)) == 0;
+    whole &= json_object_set_new(o, "gaps", json_thickness(&r->gaps)) == 0;
     json_decref(counts);
     json_decref(measures);
     if (!whole) json_decref(o);
