@@ -64,7 +64,7 @@ static double project(const camera *c, const double p[3], double at[2])
     return depth;
 }
 
-static jali_status laid_create(jali_context *ctx, const jali_surface *surface, laid *l)
+jali_status laid_create(jali_context *ctx, const jali_surface *surface, laid *l)
 {
     *l = (laid){.surface = surface};
     return ALLOCATE(ctx, l->at, surface->mesh.triangle_count + 1);

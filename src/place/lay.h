@@ -26,10 +26,27 @@ typedef struct camera {
 ///   fails  JALI_BAD_VALUE (up along the view, no direction)
 jali_status aim(jali_context *ctx, const jali_camera *opt, const double centre[3], camera *c);
 
-/// Both fill a new `laid`; free with laid_free.
+/// These fill a new `laid`; free with laid_free.
 jali_status lay_by_camera(jali_context *ctx, const jali_surface *surface, const camera *c, laid *l);
 jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double centre_uv[2],
                              laid *l);
+
+/// A picture to be laid on a surface that does not come unrolled.
+typedef struct flat_window {
+    double at_mm[3];               // its centre goes to the nearest place of the surface
+    double up[3];                  // zeros: z; where the surface is level, y
+    double size_mm[2], ring_mm[2]; // of the picture, and of the zone beside and above it
+} flat_window;
+
+/// Flatten the faces around a place until they hold the window.
+///   fails  JALI_NO_RESULT (no flattening without folds, or one that is stretched too much: the message says
+///          how much, where, and which width would do), JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+///   cost   O(faces of the surface + n^1.5) for n faces in the window; 20,000: about 0.2 s
+jali_status lay_by_flattening(jali_context *ctx, const jali_surface *surface, const flat_window *window,
+                              laid *l);
+
+/// A new one with places to be filled.
+jali_status laid_create(jali_context *ctx, const jali_surface *surface, laid *l);
 void laid_free(jali_context *ctx, laid *l);
 
 /// Which face is nearest to the viewer at samples of the plane: sample (i, j) at low + (i, j) * step.

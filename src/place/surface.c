@@ -157,14 +157,31 @@ static void unrolled_centre(const placing_work *w, double uv[2])
     for (int i = 0; i < 2 && !w->opt.at_given; i++) uv[i] = (low[i] + high[i]) / 2;
 }
 
+// A surface that does not come unrolled is flattened around the picture's centre: the given one, or where a
+// projected picture would have most room.
+static jali_status flatten_picture(jali_context *ctx, placing_work *w)
+{
+    jali_status status;
+    flat_window window = {.size_mm = {w->size_mm[0], w->size_mm[1]},
+                          .ring_mm = {w->ring_mm[0], w->ring_mm[1]}};
+    double room, half[2] = {w->size_mm[0] / 2, w->size_mm[1] / 2};
+    double wanted = 1 + MAX(w->ring_mm[0], w->ring_mm[1]) / MIN(half[0], half[1]);
+    memcpy(window.at_mm, w->opt.at_mm, sizeof window.at_mm);
+    memcpy(window.up, w->opt.camera.up, sizeof window.up);
+    if (!w->opt.at_given) {
+        TRY(find_view(ctx, w->surface, &w->opt, half, wanted, &w->view, &room));
+        memcpy(window.at_mm, w->view.centre, sizeof window.at_mm);
+    }
+    TRY(lay_by_flattening(ctx, w->surface, &window, &w->plane));
+done:
+    return status;
+}
+
 static jali_status wrap_picture(jali_context *ctx, placing_work *w)
 {
     jali_status status;
     double uv[2] = {0, 0}, around = w->surface->around_mm;
-    if (!w->surface->uv)
-        return fail(ctx, JALI_BAD_VALUE,
-                    "this surface does not come unrolled, so nothing can be wrapped on it; "
-                    "--place project is accepted");
+    if (!w->surface->uv) return flatten_picture(ctx, w);
     if (around > 0 && w->size_mm[0] + 2 * w->ring_mm[0] > around) { // the zones on both sides become one
         w->ring_mm[0] = (around - w->size_mm[0]) / 2;
         if (w->ring_mm[0] < w->opt.phi_s_mm / 2)

@@ -1,0 +1,339 @@
+// Flatten the part of a surface that a picture is wrapped on.
+//
+// How:     a disc of faces grows from the picture's centre until it holds the picture's window, and is
+//          flattened with as little change of lengths as can be; where its own border still cuts the window,
+//          a larger disc is. Then up becomes up, and the centre the origin.
+// Source:  rigid.c, circle.c and relax.c, each with its own.
+// Limits:  no cuts but the disc's border: a window around a handle or a hole is not covered. One-to-one on
+//          each face; that no two faces overlap is checked exactly where voids are cut.
+// Checked: tests/test_flatten.c: planes, cylinders, cones and caps against formulas; rough surfaces by seeds.
+#include "place/disc.h"
+#include "place/lay.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double SLACK[] = {1.15, 1.5, 2.2}; // sizes of the disc over that of the window
+static const double STEEPEST = 0.99;            // up along the normal, beyond: the back is up
+static const double MOST_DISTORTION = 3;        // largest over least stretch
+enum { OFFER_STEPS = 24 };
+
+typedef struct flat_work {
+    const jali_surface *surface;
+    const flat_window *window;
+    double half_mm[2]; // of the window
+    double up[3];
+    disc_seed seed;
+    disc d;
+} flat_work;
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double c[3])
+{
+    for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static void face_edges(const jali_mesh *m, int32_t face, double a[3], double b[3])
+{
+    for (int k = 0; k < 3; k++) {
+        a[k] = m->vertex[m->triangle[face][1]][k] - m->vertex[m->triangle[face][0]][k];
+        b[k] = m->vertex[m->triangle[face][2]][k] - m->vertex[m->triangle[face][0]][k];
+    }
+}
+
+// --- Where the disc begins
+
+// The point of a segment nearest to p; its squared distance.
+static double nearest_on_side(const double a[3], const double b[3], const double p[3], double at[3])
+{
+    double e[3], r[3], away = 0;
+    for (int k = 0; k < 3; k++) {
+        e[k] = b[k] - a[k];
+        r[k] = p[k] - a[k];
+    }
+    double share = MIN(MAX(dot(r, e) / dot(e, e), 0), 1);
+    for (int k = 0; k < 3; k++) {
+        at[k] = a[k] + share * e[k];
+        away += (p[k] - at[k]) * (p[k] - at[k]);
+    }
+    return away;
+}
+
+static double nearest_on_face(const jali_mesh *m, int32_t face, const double p[3], double at[3])
+{
+    const double *corner = m->vertex[m->triangle[face][0]];
+    double a[3], b[3], r[3], n[3], side[3], least = INFINITY;
+    face_edges(m, face, a, b);
+    for (int k = 0; k < 3; k++) r[k] = p[k] - corner[k];
+    cross(a, b, n);
+    double nn = dot(n, n), inside[3];
+    cross(a, r, side);
+    inside[2] = dot(side, n) / nn;
+    cross(r, b, side);
+    inside[1] = dot(side, n) / nn;
+    inside[0] = 1 - inside[1] - inside[2];
+    if (inside[0] >= 0 && inside[1] >= 0 && inside[2] >= 0) {
+        double off = dot(r, n) / nn;
+        for (int k = 0; k < 3; k++) at[k] = p[k] - off * n[k];
+        return off * off * nn;
+    }
+    for (int k = 0; k < 3; k++) {
+        double here[3];
+        double away = nearest_on_side(m->vertex[m->triangle[face][k]],
+                                      m->vertex[m->triangle[face][(k + 1) % 3]], p, here);
+        if (away >= least) continue;
+        least = away;
+        memcpy(at, here, sizeof here);
+    }
+    return least;
+}
+
+static void find_nearest(flat_work *w)
+{
+    double least = INFINITY;
+    for (int32_t t = 0; t < w->surface->mesh.triangle_count; t++) {
+        double at[3], away = nearest_on_face(&w->surface->mesh, t, w->window->at_mm, at);
+        if (away >= least) continue;
+        least = away;
+        w->seed.face = t;
+        memcpy(w->seed.at, at, sizeof at);
+    }
+}
+
+// The mean normal over half the window, so that bumps do not tilt the picture, and the right hand of up
+// there.
+static void find_frame(flat_work *w)
+{
+    const jali_mesh *m = &w->surface->mesh;
+    double a[3], b[3], own[3], sum[3], reach = MIN(w->half_mm[0], w->half_mm[1]) / 2;
+    face_edges(m, w->seed.face, a, b);
+    cross(a, b, own);
+    memcpy(sum, own, sizeof sum);
+    for (int32_t t = 0; t < m->triangle_count; t++) {
+        double n[3], away = 0;
+        for (int k = 0; k < 3; k++) {
+            double e = m->vertex[m->triangle[t][0]][k] - w->seed.at[k];
+            away += e * e;
+        }
+        if (away > reach * reach) continue;
+        face_edges(m, t, a, b);
+        cross(a, b, n);
+        if (dot(n, own) > 0)
+            for (int k = 0; k < 3; k++) sum[k] += n[k];
+    }
+    double length = sqrt(dot(sum, sum)), wide = 0;
+    for (int k = 0; k < 3; k++) w->seed.normal[k] = sum[k] / length;
+    memcpy(w->up, w->window->up, sizeof w->up);
+    if (dot(w->up, w->up) == 0) w->up[2] = 1;
+    for (int i = 0; i < 2 && !(wide > 0); i++) {
+        if (i == 1) memcpy(w->up, (double[3]){0, 1, 0}, sizeof w->up);
+        double along = dot(w->up, w->seed.normal) / sqrt(dot(w->up, w->up));
+        cross(w->up, w->seed.normal, w->seed.right);
+        wide = fabs(along) > STEEPEST && i == 0 ? 0 : sqrt(dot(w->seed.right, w->seed.right));
+    }
+    for (int k = 0; k < 3; k++) w->seed.right[k] /= wide;
+}
+
+// --- Where the disc lies
+
+// Where a point of the first face lies in the plane becomes the origin.
+static void centre_disc(flat_work *w)
+{
+    disc *d = &w->d;
+    double a[3], b[3], n[3], r[3], side[3], share[3], origin[2] = {0, 0};
+    face_edges(d->mesh, d->face[0], a, b);
+    cross(a, b, n);
+    for (int k = 0; k < 3; k++) r[k] = w->seed.at[k] - d->mesh->vertex[d->mesh->triangle[d->face[0]][0]][k];
+    cross(r, b, side);
+    share[1] = dot(side, n) / dot(n, n);
+    cross(a, r, side);
+    share[2] = dot(side, n) / dot(n, n);
+    share[0] = 1 - share[1] - share[2];
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++) origin[i] += share[k] * d->at[d->corner[0][k]][i];
+    for (int32_t v = 0; v < d->vertex_count; v++)
+        for (int i = 0; i < 2; i++) d->at[v][i] -= origin[i];
+}
+
+// What is up on the surface, on the mean over the middle of the window, is turned upwards.
+static void turn_upright(flat_work *w)
+{
+    disc *d = &w->d;
+    double sum[2] = {0, 0}, reach = MIN(w->half_mm[0], w->half_mm[1]) / 2;
+    for (int32_t f = 0; f < d->face_count; f++) {
+        const double *p[3] = {d->at[d->corner[f][0]], d->at[d->corner[f][1]], d->at[d->corner[f][2]]};
+        double a[3], b[3];
+        if (f > 0 && hypot(p[0][0], p[0][1]) > reach) continue;
+        face_edges(d->mesh, d->face[f], a, b);
+        double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), ua = dot(w->up, a), ub = dot(w->up, b);
+        double area = sqrt(MAX(aa * bb - ab * ab, 1e-30)); // up = (x a + y b) / area^2, and a normal part
+        double x = (ua * bb - ub * ab) / area, y = (ub * aa - ua * ab) / area;
+        for (int i = 0; i < 2; i++) sum[i] += x * (p[1][i] - p[0][i]) + y * (p[2][i] - p[0][i]);
+    }
+    double length = hypot(sum[0], sum[1]);
+    if (!(length > 0)) return;
+    for (int32_t v = 0; v < d->vertex_count; v++) {
+        double x = d->at[v][0], y = d->at[v][1];
+        d->at[v][0] = (x * sum[1] - y * sum[0]) / length;
+        d->at[v][1] = (x * sum[0] + y * sum[1]) / length;
+    }
+}
+
+// The scale of the window at which it reaches a box of two or three places.
+static double reached(const flat_work *w, const double *const p[], int count)
+{
+    double scale = 0;
+    for (int i = 0; i < 2; i++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int k = 0; k < count; k++) {
+            low = MIN(low, p[k][i]);
+            high = MAX(high, p[k][i]);
+        }
+        scale = MAX(scale, MAX(low, -high) / w->half_mm[i]);
+    }
+    return scale;
+}
+
+// Does a side where the disc was cut off come into the window?
+static bool cut_short(const flat_work *w)
+{
+    const disc *d = &w->d;
+    for (int32_t f = 0; f < d->face_count; f++)
+        for (int k = 0; k < 3; k++) {
+            const double *p[2] = {d->at[d->corner[f][(k + 1) % 3]], d->at[d->corner[f][(k + 2) % 3]]};
+            if (d->cut[f] >> k & 1 && reached(w, p, 2) < 1) return true;
+        }
+    return false;
+}
+
+static jali_status flatten_window(jali_context *ctx, flat_work *w)
+{
+    jali_status status;
+    const jali_mesh *mesh = &w->surface->mesh;
+    sides linked = {0};
+    TRY(sides_create(ctx, mesh->vertex_count, mesh->triangle_count, (const int32_t(*)[3])mesh->triangle,
+                     &linked));
+    arena_mark mark = arena_here(ctx);
+    for (size_t i = 0; i < sizeof SLACK / sizeof *SLACK; i++) {
+        double half[2] = {SLACK[i] * w->half_mm[0], SLACK[i] * w->half_mm[1]};
+        arena_rewind(ctx, mark);
+        TRY(grow_disc(ctx, mesh, &linked, &w->seed, half, &w->d));
+        TRY(flatten_disc(ctx, &w->d));
+        centre_disc(w);
+        turn_upright(w);
+        if (!cut_short(w)) break;
+    }
+done:
+    sides_free(ctx, &linked);
+    return status;
+}
+
+// --- How much it is stretched
+
+// The metric of each face with those around it, so that a single sliver does not count: the mean over its
+// corners of the means there, by area. In `metric`, [face_count].
+static jali_status mean_metrics(jali_context *ctx, const laid *l, const disc *d, double (*metric)[3])
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    double(*sum)[4];
+    TRY(ARENA(ctx, sum, d->vertex_count + 1));
+    memset(sum, 0, (size_t)d->vertex_count * sizeof *sum);
+    for (int32_t f = 0; f < d->face_count; f++) {
+        const double(*p)[2] = (const double(*)[2])l->at[d->face[f]];
+        double g[3],
+            area = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+        if (!face_metric(l, d->face[f], g)) continue;
+        for (int k = 0; k < 3; k++) {
+            for (int i = 0; i < 3; i++) sum[d->corner[f][k]][i] += area * g[i];
+            sum[d->corner[f][k]][3] += area;
+        }
+    }
+    for (int32_t f = 0; f < d->face_count; f++)
+        for (int i = 0; i < 3; i++) {
+            metric[f][i] = 0;
+            for (int k = 0; k < 3; k++) metric[f][i] += sum[d->corner[f][k]][i] / sum[d->corner[f][k]][3] / 3;
+        }
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+// Least and largest stretch where the window, scaled, reaches, and the face of the one further from 1.
+static int32_t stretches(const flat_work *w, const double (*metric)[3], double scale, double stretch[2])
+{
+    const disc *d = &w->d;
+    int32_t face[2] = {0, 0};
+    stretch[0] = INFINITY;
+    stretch[1] = 0;
+    for (int32_t f = 0; f < d->face_count; f++) {
+        const double *p[3] = {d->at[d->corner[f][0]], d->at[d->corner[f][1]], d->at[d->corner[f][2]]};
+        if (f > 0 && reached(w, p, 3) >= scale) continue;
+        double mean = (metric[f][0] + metric[f][2]) / 2;
+        double apart = hypot((metric[f][0] - metric[f][2]) / 2, metric[f][1]);
+        double here[2] = {sqrt(MAX(mean - apart, 0)), sqrt(mean + apart)};
+        if (here[0] < stretch[0]) face[0] = f;
+        if (here[1] > stretch[1]) face[1] = f;
+        stretch[0] = MIN(stretch[0], here[0]);
+        stretch[1] = MAX(stretch[1], here[1]);
+    }
+    return face[stretch[0] * stretch[1] > 1];
+}
+
+static jali_status check_distortion(jali_context *ctx, const flat_work *w, const laid *l)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    double(*metric)[3], stretch[2], here[2], fits = 0, fails = 1;
+    TRY(ARENA(ctx, metric, w->d.face_count + 1));
+    TRY(mean_metrics(ctx, l, &w->d, metric));
+    int32_t worst = stretches(w, (const double(*)[3])metric, 1, stretch);
+    if (stretch[1] <= MOST_DISTORTION * stretch[0]) goto done;
+    for (int i = 0; i < OFFER_STEPS; i++) {
+        double middle = (fits + fails) / 2;
+        stretches(w, (const double(*)[3])metric, middle, here);
+        if (here[1] <= MOST_DISTORTION * here[0])
+            fits = middle;
+        else
+            fails = middle;
+    }
+    double width = floor(20 * (fits * w->half_mm[0] - w->window->ring_mm[0])) / 10;
+    const double *at = w->d.mesh->vertex[w->d.mesh->triangle[w->d.face[worst]][0]];
+    char offer[96] = "another place (--at) is needed";
+    if (width > 1)
+        snprintf(offer, sizeof offer, "a width of %.4g mm or another place (--at) is needed", width);
+    status =
+        fail(ctx, JALI_NO_RESULT,
+             "laid flat, the surface is stretched %.2f to %.2f times, worst at (%.4g, %.4g, %.4g) mm; at "
+             "most %g to one is accepted: %s",
+             stretch[0], stretch[1], at[0], at[1], at[2], MOST_DISTORTION, offer);
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+jali_status lay_by_flattening(jali_context *ctx, const jali_surface *surface, const flat_window *window,
+                              laid *l)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    flat_work w = {.surface = surface, .window = window};
+    for (int i = 0; i < 2; i++) w.half_mm[i] = window->size_mm[i] / 2 + window->ring_mm[i];
+    TRY(laid_create(ctx, surface, l));
+    find_nearest(&w);
+    find_frame(&w);
+    TRY(flatten_window(ctx, &w));
+    for (int32_t t = 0; t < surface->mesh.triangle_count; t++)
+        for (int k = 0; k < 3; k++) l->at[t][k][0] = l->at[t][k][1] = NAN;
+    for (int32_t f = 0; f < w.d.face_count; f++)
+        for (int k = 0; k < 3; k++) memcpy(l->at[w.d.face[f]][k], w.d.at[w.d.corner[f][k]], sizeof *w.d.at);
+    TRY(check_distortion(ctx, &w, l));
+done:
+    arena_rewind(ctx, mark);
+    if (status != JALI_OK) laid_free(ctx, l);
+    return status;
+}
