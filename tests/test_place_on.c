@@ -237,8 +237,12 @@ TEST(a_view_is_found_and_hidden_parts_are_refused)
     opt.camera.direction[2] = 1;
     opt.camera.up[2] = 1;
     CHECK_STATUS(put(&s, &opt, 64, 64, &l), JALI_BAD_VALUE);
-    opt.placing = JALI_PLACE_WRAP;
-    CHECK_STATUS(put(&s, &opt, 64, 64, &l), JALI_BAD_VALUE);
+    opt.placing = JALI_PLACE_WRAP; // around two edges of the box: it is flattened without stretch
+    opt.camera.direction[2] = opt.camera.up[2] = 0;
+    CHECK_OK(put(&s, &opt, 64, 64, &l));
+    CHECK(fabs(l.placed.stretch[0] - 1) < 1e-3 && fabs(l.placed.stretch[1] - 1) < 1e-3);
+    CHECK(fabs(l.placed.centre_mm[0] - 30) < 1e-9 && fabs(l.placed.centre_mm[2] - 30) < 1e-9);
+    take_away(&l);
     jali_surface_free(ctx, &s);
 }
 
