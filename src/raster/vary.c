@@ -123,19 +123,34 @@ static uint64_t runs_of(const uint64_t *row, int32_t x, int32_t n, uint64_t want
     return found;
 }
 
+// A word's bits spread over runs, kept by length: a patch has most of its lengths twice.
+typedef struct spread {
+    uint64_t known; // bit n-1: run[n] is made
+    wide run[65];   // [n]: bits i .. i + n - 1 for each bit i, n up to 64
+} spread;
+
+static wide spread_over(spread *s, int32_t n)
+{
+    if (s->known >> (n - 1) & 1) return s->run[n];
+    int32_t have =
+        64 - __builtin_clzll(s->known & ((UINT64_C(1) << (n - 1)) - 1)); // the longest that is shorter
+    wide w = s->run[have];
+    while (have < n) {
+        int32_t more = MIN(have, n - have);
+        w |= w << more;
+        have += more;
+    }
+    s->known |= UINT64_C(1) << (n - 1);
+    return s->run[n] = w;
+}
+
 // Set the columns x + i .. x + i + n - 1 for each bit i, those of the bitmap's row alone.
-static void spread_runs(uint64_t bits, int32_t x, int32_t n, uint64_t *row, int64_t stride)
+static void spread_runs(spread *s, int32_t x, int32_t n, uint64_t *row, int64_t stride)
 {
     while (n > 0) {
-        int32_t part = MIN(n, 64);
-        wide w = bits;
-        for (int32_t have = 1; have < part;) {
-            int32_t more = MIN(have, part - have);
-            w |= w << more;
-            have += more;
-        }
+        int32_t part = MIN(n, 64), bit = x & 63;
         int64_t at = x >> 6;
-        int32_t bit = x & 63;
+        wide w = spread_over(s, part);
         uint64_t out[3] = {(uint64_t)(w << bit), (uint64_t)(w >> (64 - bit)),
                            bit ? (uint64_t)(w >> (128 - bit)) : 0};
         for (int64_t k = 0; k < 3; k++)
@@ -204,8 +219,11 @@ static void dilate_row(const varying *v, int32_t source, int32_t y0, int32_t y1)
                 if (source >= y0 && source < y1) v->dst->word[(int64_t)source * v->dst->stride + w] |= bits;
                 continue;
             }
+            spread runs;
+            runs.known = 1;
+            runs.run[1] = bits;
             for (int32_t k = MAX(0, y0 - source - p->top); k < MIN(p->rows, y1 - source - p->top); k++)
-                spread_runs(bits, 64 * w + p->span[k][0], p->span[k][1] - p->span[k][0] + 1,
+                spread_runs(&runs, 64 * w + p->span[k][0], p->span[k][1] - p->span[k][0] + 1,
                             v->dst->word + (int64_t)(source + p->top + k) * v->dst->stride, v->dst->stride);
         }
     }
