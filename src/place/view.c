@@ -5,8 +5,9 @@
 
 #include <math.h>
 
-static const double VIEW_SAMPLES = 256;       // along the longer side of the object
-static const double MOST_TILT = 3;            // a face tilted so far is stretched three times: no room there
+static const double VIEW_SAMPLES = 256;    // along the longer side of the object
+static const double TILTS[] = {1.5, 2, 3}; // most stretch of a face that is room: as little as will do
+enum { TILT_COUNT = sizeof TILTS / sizeof *TILTS };
 static const double ROOM_STEP = 1.03;         // scales that are tried
 static const int32_t MOST_SAMPLES = 64 << 20; // of any view
 
@@ -76,7 +77,7 @@ void draw_faces(const laid *l, const uint8_t *only, const int32_t *turns, view *
 // --- The view with the most room
 
 // Sums of bad samples over all rectangles from the corner: [(rows + 1) * (columns + 1)].
-static void sum_bad(const laid *l, const view *v, int32_t *sum)
+static void sum_bad(const laid *l, const view *v, double tilt, int32_t *sum)
 {
     int32_t width = v->columns + 1;
     memset(sum, 0, (size_t)width * sizeof *sum);
@@ -85,13 +86,12 @@ static void sum_bad(const laid *l, const view *v, int32_t *sum)
         for (int32_t x = 0; x < v->columns; x++) {
             size_t i = (size_t)y * (size_t)v->columns + (size_t)x;
             double g[3];
-            bool bad =
-                v->face[i] < 0 || !face_metric(l, v->face[i], g) || g[0] + g[2] > 1 + MOST_TILT * MOST_TILT;
+            bool bad = v->face[i] < 0 || !face_metric(l, v->face[i], g) || g[0] + g[2] > 1 + tilt * tilt;
             // A jump in depth between neighbours is an edge behind which something is hidden.
             for (int k = 0; k < 2 && !bad; k++) {
                 size_t next = i + (k ? (size_t)v->columns : 1);
                 if ((k ? y + 1 == v->rows : x + 1 == v->columns) || v->face[next] < 0) continue;
-                bad = fabsf(v->nearness[next] - v->nearness[i]) > 2 * MOST_TILT * v->step;
+                bad = fabsf(v->nearness[next] - v->nearness[i]) > 2 * TILTS[TILT_COUNT - 1] * v->step;
             }
             sum[(y + 1) * width + x + 1] =
                 sum[y * width + x + 1] + sum[(y + 1) * width + x] - sum[y * width + x] + bad;
@@ -124,7 +124,7 @@ static double largest_room(const view *v, const int32_t *sum, const double half_
 }
 
 static jali_status room_in_view(jali_context *ctx, const jali_surface *surface, const double half_mm[2],
-                                camera *c, double *room)
+                                double wanted, camera *c, double *room, int *tilt)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
@@ -142,8 +142,11 @@ static jali_status room_in_view(jali_context *ctx, const jali_surface *surface, 
     TRY(view_create(ctx, low, high, MAX(high[0] - low[0], high[1] - low[1]) / VIEW_SAMPLES, true, &v));
     TRY(ARENA(ctx, sum, ((size_t)v.rows + 1) * ((size_t)v.columns + 1)));
     draw_faces(&l, NULL, NULL, &v);
-    sum_bad(&l, &v, sum);
-    *room = largest_room(&v, sum, half_mm, centre);
+    *room = 0;
+    for (*tilt = -1; *tilt + 1 < TILT_COUNT && *room < wanted;) {
+        sum_bad(&l, &v, TILTS[++*tilt], sum);
+        *room = largest_room(&v, sum, half_mm, centre);
+    }
     double x = low[0] + centre[0] * v.step, y = low[1] + centre[1] * v.step;
     double depth = *room > 0 ? -v.nearness[(size_t)centre[1] * (size_t)v.columns + (size_t)centre[0]] : 0;
     for (int k = 0; k < 3; k++) c->centre[k] += x * c->right[k] + y * c->up[k] + depth * c->forward[k];
@@ -166,17 +169,21 @@ jali_status find_view(jali_context *ctx, const jali_surface *surface, const jali
     jali_camera look = opt->camera;
     bool given = !no_direction(look.direction);
     camera best = {0};
+    int least_tilt = TILT_COUNT, tilt;
     *room = -1;
     for (int i = 0; i < (given ? 1 : SIDES) && (i != 1 || *room < wanted); i++) {
-        // The front when it has room, else the side that has most, near ones first.
+        // The front when it has room, else the side that has it with the least tilt, else the one that has
+        // most.
         double turn = (i % 2 ? -1 : 1) * ((i + 1) / 2) * 2 * acos(-1) / SIDES, here = 0;
         if (!given)
             memcpy(look.direction, (double[3]){rint(1e9 * sin(turn)) / 1e9, rint(1e9 * cos(turn)) / 1e9, 0},
                    sizeof look.direction);
         TRY(aim(ctx, &look, (double[3]){0, 0, 0}, c));
-        TRY(room_in_view(ctx, surface, half_mm, c, &here));
-        if (here > *room) {
+        TRY(room_in_view(ctx, surface, half_mm, wanted, c, &here, &tilt));
+        bool fits = here >= wanted, fitted = *room >= wanted;
+        if (fits && fitted && tilt != least_tilt ? tilt < least_tilt : here > *room) {
             *room = here;
+            least_tilt = tilt;
             best = *c;
         }
     }
