@@ -71,7 +71,6 @@ coverage: packages
 	@gcovr --root . --filter src/ --filter cli/ build/coverage
 
 pictures: release
-	$(call install,unzip)
 	@tools/pictures.sh build/release/jali docs/pictures
 
 # The tables of docs/results.md anew, from the pictures beside the project.

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Draw the pictures of the README again: a built-in sample, the plate that comes of it, the solid.
+# Draw the pictures of the README again: a built-in sample, the plate that comes of it, the solid; a vase.
 #
-#     tools/pictures.sh JALI FOLDER    (needs unzip)
+#     tools/pictures.sh JALI FOLDER
 set -eu
 jali=$1 out=$2
 work=$(mktemp -d)
@@ -9,7 +9,11 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
 for name in tree girih; do
     "$jali" sample "$name" --size 1000 -o "$out/$name.png" --force-overwrite --quiet
-    "$jali" carve "$out/$name.png" --width 70 --corner 3 --quiet --force-overwrite \
-        -o "$out/$name-plate.png" -o "$work/$name.3mf"
-    unzip -q -p "$work/$name.3mf" Metadata/thumbnail.png >"$out/$name-solid.png"
+    "$jali" carve "$out/$name.png" --width 70 --corner 3 --quiet --force-overwrite --no-predict \
+        -o "$out/$name-plate.png" --render "$out/$name-solid.png" --size 400
+done
+"$jali" carve "$out/girih.png" --surface vase:h=120 --repeat 3 --frame 0 --quiet --no-predict -o "$work/vase.stl"
+for light in "" --lamp; do
+    "$jali" render "$work/vase.stl" $light --view 0,1,-0.3 --size 560 --quiet --force-overwrite \
+        -o "$out/vase${light#-}.png"
 done

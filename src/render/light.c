@@ -5,10 +5,10 @@
 // Nothing is random, so pictures are the same everywhere.
 #include "render/light.h"
 
-static const vec stone = {0.80, 0.63, 0.43}, floor_tone = {0.80, 0.78, 0.75}, plaster = {0.60, 0.57, 0.54};
-static const vec sunlight = {2.05, 1.93, 1.72}, zenith = {0.62, 0.70, 0.82}, horizon = {0.86, 0.84, 0.80};
+static const vec stone = {0.74, 0.49, 0.29}, floor_tone = {0.80, 0.78, 0.75}, plaster = {0.60, 0.57, 0.54};
+static const vec sunlight = {2.05, 1.93, 1.72}, zenith = {0.60, 0.68, 0.80}, horizon = {0.78, 0.77, 0.75};
 static const vec lamplight = {1.0, 0.70, 0.36}, moonlight = {0.020, 0.026, 0.040};
-static const vec backdrop = {0.80, 0.79, 0.77}, haze = {0.60, 0.66, 0.74};
+static const vec backdrop = {0.79, 0.785, 0.775}, haze = {0.60, 0.66, 0.74};
 
 static double fraction(double x)
 {
@@ -124,7 +124,7 @@ static vec skylight_along(const stage *s, const sight *seen, vec direction)
 {
     ray r = leaving(s, seen, direction, 0.5 * s->scene->size);
     // What shuts out the sky is lit itself, a little.
-    return ray_any(s->scene, &r) ? scaled(stone, 0.13) : sky(s, direction);
+    return ray_any(s->scene, &r) ? scaled(stone, 0.10) : sky(s, direction);
 }
 
 static vec reflected_along(const stage *s, const sight *seen, vec direction, uint32_t turn)

@@ -2,9 +2,10 @@
 //
 // Passes over the rows, each in parallel. First one sample a pixel: what is seen, and by a few rays the light
 // that falls there. Four by four pixels share out one set of directions, so that the mean over such a window
-// (of pixels that lie on the same surface) is that of sixteen times as many rays and no noise is left; light
-// from everywhere is smooth and gets a second, wider mean. Last, pixels where something changes are sampled
-// three by three; the samples take their light from the neighbouring pixel that lies on their surface.
+// (of pixels that lie on the same surface) is that of sixteen times as many rays; a second, wider mean takes
+// the steps out of soft shadows, a third one the spots out of what the lamp's light is reflected by. Last,
+// pixels where something changes are sampled three by three; the samples take their light from the
+// neighbouring pixel that lies on their surface.
 //
 // Limits:  facets are shaded flat; light is reflected once at night, by a constant by day.
 // Checked: tests/test_render.c; docs/pictures by eye.
@@ -25,6 +26,7 @@ typedef struct canvas {
     sight *seen;       // [height * width]
     light *light[2];   // [height * width] each: before and after a smoothing
     int32_t stride;    // of the smoothing, px
+    bool shadows;      // are smoothed too
     int32_t first_row; // of the band
     uint8_t *rgb;
     void (*row)(const struct canvas *c, int32_t y);
@@ -75,8 +77,7 @@ static bool same_surface(const stage *s, const sight *a, const sight *b)
     return dot(a->normal, b->normal) > 0.9 && off < 0.004 * s->scene->size;
 }
 
-// The mean over a window of pixels `stride` apart; only the narrow one counts for direct light, whose shadows
-// have edges.
+// The mean over a window of pixels `stride` apart.
 static void smooth_row(const canvas *c, int32_t y)
 {
     int32_t stride = c->stride;
@@ -94,7 +95,7 @@ static void smooth_row(const canvas *c, int32_t y)
                 count++;
             }
         c->light[1][here].ambient = scaled(sum.ambient, 1.0 / count);
-        c->light[1][here].direct = stride == 1 ? scaled(sum.direct, 1.0 / count) : c->light[0][here].direct;
+        c->light[1][here].direct = c->shadows ? scaled(sum.direct, 1.0 / count) : c->light[0][here].direct;
     }
 }
 
@@ -176,9 +177,10 @@ static jali_status pass(jali_context *ctx, canvas *c, void (*row)(const canvas *
     return JALI_OK;
 }
 
-static jali_status smooth(jali_context *ctx, canvas *c, int32_t stride, double from, double to)
+static jali_status smooth(jali_context *ctx, canvas *c, int32_t stride, bool shadows, double from, double to)
 {
     c->stride = stride;
+    c->shadows = shadows;
     jali_status status = pass(ctx, c, smooth_row, from, to);
     light *swap = c->light[0];
     c->light[0] = c->light[1];
@@ -204,9 +206,10 @@ jali_status jali_render(jali_context *ctx, const jali_mesh *mesh, const jali_ren
     TRY(ALLOCATE(ctx, c.seen, (size_t)c.width * (size_t)c.height));
     for (int i = 0; i < 2; i++) TRY(ALLOCATE(ctx, c.light[i], (size_t)c.width * (size_t)c.height));
     TRY(pass(ctx, &c, sample_row, 0, 0.6));
-    TRY(smooth(ctx, &c, 1, 0.6, 0.65));
-    TRY(smooth(ctx, &c, 3, 0.65, 0.7));
-    TRY(pass(ctx, &c, colour_row, 0.7, 1));
+    TRY(smooth(ctx, &c, 1, true, 0.6, 0.65));
+    TRY(smooth(ctx, &c, 2, true, 0.65, 0.7));
+    if (opt.lamp) TRY(smooth(ctx, &c, 5, false, 0.7, 0.75));
+    TRY(pass(ctx, &c, colour_row, 0.75, 1));
 done:
     release(ctx, c.light[0]);
     release(ctx, c.light[1]);
