@@ -230,7 +230,13 @@ TEST(a_view_is_found_and_hidden_parts_are_refused)
     opt.at_given = true;
     opt.at_mm[0] = 8, opt.at_mm[1] = -5, opt.at_mm[2] = 30;
     CHECK_STATUS(put(&s, &opt, 64, 64, &l), JALI_NO_RESULT);
-    CHECK(strstr(jali_message(ctx), "hides") != NULL);
+    CHECK(strstr(jali_message(ctx), "hides") && strstr(jali_message(ctx), "seen along (0, -1, 0)"));
+    const char *offer = strstr(jali_message(ctx), "a width of ");
+    CHECK(offer != NULL);
+    opt.width_mm = atof(offer + strlen("a width of "));
+    CHECK_OK(put(&s, &opt, 64, 64, &l));
+    take_away(&l);
+    opt.width_mm = 40;
     opt.at_mm[0] = 500;
     CHECK_STATUS(put(&s, &opt, 64, 64, &l), JALI_NO_RESULT);
     CHECK(strstr(jali_message(ctx), "beside the surface") != NULL);

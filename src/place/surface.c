@@ -15,7 +15,13 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { MOST_PIXEL_UNITS = 256, LEAST_PIXEL_UNITS = 16, HIDDEN_SAMPLES = 400, SCALE_STEPS = 24 };
+enum {
+    MOST_PIXEL_UNITS = 256,
+    LEAST_PIXEL_UNITS = 16,
+    HIDDEN_SAMPLES = 400,
+    SCALE_STEPS = 24,
+    OFFER_BYTES = 320
+};
 static const double REACH = 4; // sides of the picture that faces under it may reach beyond its middle
 static const double COVERED = 1 - 1e-6; // places are rounded to the lattice; voids are checked exactly later
 static const double MOST_STRETCH = 4;   // for which the working pixel is made finer
@@ -278,17 +284,41 @@ static double largest_scale(const placing_work *w)
     return fits;
 }
 
+// What would do instead: a smaller picture, and for a projected one a view that has room for it as it is.
+static jali_status offer_instead(jali_context *ctx, const placing_work *w, double scale,
+                                 char offer[OFFER_BYTES])
+{
+    jali_status status = JALI_OK;
+    double width = floor(scale * w->size_mm[0] * 10) / 10, room = 0, wanted;
+    bool chosen = w->opt.at_given || w->opt.camera.direction[0] != 0 || w->opt.camera.direction[1] != 0 ||
+                  w->opt.camera.direction[2] != 0;
+    char size[64] = "no size fits there", elsewhere[OFFER_BYTES / 2] = "";
+    if (scale * MIN(w->size_mm[0], w->size_mm[1]) > 1)
+        snprintf(size, sizeof size, "a width of %.4g mm fits there", width);
+    if (w->plane.depth && chosen && !w->opt.camera.perspective) {
+        jali_place_options free_view = w->opt;
+        camera c;
+        memset(free_view.camera.direction, 0, sizeof free_view.camera.direction);
+        double half[2] = {w->size_mm[0] / 2, w->size_mm[1] / 2};
+        wanted = 1 + MAX(w->ring_mm[0], w->ring_mm[1]) / MIN(half[0], half[1]);
+        TRY(find_view(ctx, w->surface, &free_view, half, wanted, &c, &room));
+        if (room >= wanted)
+            snprintf(elsewhere, sizeof elsewhere,
+                     "; this one does around (%.4g, %.4g, %.4g) mm, seen along (%.3g, %.3g, %.3g)",
+                     c.centre[0], c.centre[1], c.centre[2], c.forward[0], c.forward[1], c.forward[2]);
+    }
+    snprintf(offer, OFFER_BYTES, "%s%s", size, elsewhere);
+done:
+    return status;
+}
+
 static jali_status check_room(jali_context *ctx, const placing_work *w)
 {
     double covered = cover(w, 1);
+    char offer[OFFER_BYTES];
     if (covered >= COVERED) return JALI_OK;
-    double scale = largest_scale(w);
-    char offer[128];
-    if (scale * MIN(w->size_mm[0], w->size_mm[1]) > 1)
-        snprintf(offer, sizeof offer, "a width of %.4g mm fits there",
-                 floor(scale * w->size_mm[0] * 10) / 10);
-    else
-        snprintf(offer, sizeof offer, "no size fits there; another place (--at) or view (--dir) may do");
+    jali_status status = offer_instead(ctx, w, largest_scale(w), offer);
+    if (status != JALI_OK) return status;
     return fail(ctx, JALI_NO_RESULT,
                 "the surface %s %.3g %% of the picture's window of %.4g x %.4g mm, most at its %s; %s",
                 w->plane.depth ? "ends or turns away within" : "ends within", 100 * MAX(1 - covered, 1e-9),
@@ -320,25 +350,31 @@ static jali_status check_hidden(jali_context *ctx, const placing_work *w)
     jali_status status = JALI_OK;
     arena_mark mark = arena_here(ctx);
     view v;
-    int64_t hidden = 0, where[2] = {0, 0};
+    int64_t hidden = 0;
+    double where[2] = {0, 0}, free_scale = 1; // share of the picture from its left and bottom
     if (!w->plane.depth) return JALI_OK;
     double low[2] = {-w->size_mm[0] / 2, -w->size_mm[1] / 2}, high[2] = {-low[0], -low[1]};
     TRY(view_create(ctx, low, high, MAX(w->size_mm[0], w->size_mm[1]) / HIDDEN_SAMPLES, true, &v));
     draw_faces(&w->plane, NULL, NULL, &v);
     for (int64_t i = 0; i < (int64_t)v.columns * v.rows; i++) {
         if (v.face[i] < 0 || w->grown.taken[v.face[i]]) continue;
+        double x = (double)(i % v.columns) / v.columns, y = (double)(i / v.columns) / v.rows;
         hidden++;
-        where[0] += i % v.columns;
-        where[1] += i / v.columns;
+        where[0] += x;
+        where[1] += y;
+        free_scale = MIN(free_scale, 2 * MAX(fabs(x - 0.5), fabs(y - 0.5)));
     }
     double all = (double)v.columns * v.rows;
-    if ((double)hidden > HIDDEN_TOLERANCE * all)
-        status =
-            fail(ctx, JALI_NO_RESULT,
-                 "the object hides %.2g %% of the picture from the viewer, around %.0f %% from its left and "
-                 "%.0f %% from its top; another view (--dir) or place (--at), or a smaller picture is needed",
-                 100 * (double)hidden / all, 100.0 * (double)where[0] / (double)hidden / v.columns,
-                 100 - 100.0 * (double)where[1] / (double)hidden / v.rows);
+    if ((double)hidden > HIDDEN_TOLERANCE * all) {
+        char offer[OFFER_BYTES];
+        TRY(offer_instead(ctx, w, free_scale, offer));
+        status = fail(ctx, JALI_NO_RESULT,
+                      "the object hides %.2g %% of the picture from the viewer, around %.0f %% from its left "
+                      "and %.0f %% "
+                      "from its top; %s",
+                      100 * (double)hidden / all, 100 * where[0] / (double)hidden,
+                      100 - 100 * where[1] / (double)hidden, offer);
+    }
 done:
     arena_rewind(ctx, mark);
     return status;

@@ -176,7 +176,8 @@ jali_status find_view(jali_context *ctx, const jali_surface *surface, const jali
         // most.
         double turn = (i % 2 ? -1 : 1) * ((i + 1) / 2) * 2 * acos(-1) / SIDES, here = 0;
         if (!given)
-            memcpy(look.direction, (double[3]){rint(1e9 * sin(turn)) / 1e9, rint(1e9 * cos(turn)) / 1e9, 0},
+            memcpy(look.direction,
+                   (double[3]){rint(1e9 * sin(turn)) / 1e9 + 0.0, rint(1e9 * cos(turn)) / 1e9 + 0.0, 0},
                    sizeof look.direction);
         TRY(aim(ctx, &look, (double[3]){0, 0, 0}, c));
         TRY(room_in_view(ctx, surface, half_mm, wanted, c, &here, &tilt));
