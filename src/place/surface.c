@@ -367,7 +367,7 @@ static jali_status check_hidden(jali_context *ctx, const placing_work *w)
     double all = (double)v.columns * v.rows;
     if ((double)hidden > HIDDEN_TOLERANCE * all) {
         char offer[OFFER_BYTES];
-        TRY(offer_instead(ctx, w, free_scale, offer));
+        TRY(offer_instead(ctx, w, free_scale - 4.0 / HIDDEN_SAMPLES, offer));
         status = fail(ctx, JALI_NO_RESULT,
                       "the object hides %.2g %% of the picture from the viewer, around %.0f %% from its left "
                       "and %.0f %% "
