@@ -2,12 +2,10 @@
 // cover?
 //
 // Independent: no tiles, no rounding of the metric, no patches: at each centre the ellipse is that of the
-// exact
-//              metric there, and every pixel around it is asked in real numbers.
+//              exact metric there, and every pixel around it is asked in real numbers.
 // Method:      centres are all points of the lattice of half pixels. A disc lies in a tone when no pixel
-// centre of
-//              the other tone lies inside its ellipse; it covers the pixels whose centre lies in the ellipse
-//              widened by half a pixel.
+//              centre of the other tone lies inside its ellipse; it covers the pixels whose centre lies in
+//              the ellipse widened by half a pixel.
 // Limits:      cost = pixels * 4 * pixels of a disc: pictures up to about 1000 px a side.
 #ifndef TESTS_JUDGE_METRIC_H
 #define TESTS_JUDGE_METRIC_H

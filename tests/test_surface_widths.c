@@ -1,8 +1,8 @@
 // Widths in mm on curved surfaces, through the whole image method, by a judge that knows the exact metric.
 //
-// A picture is optimised on a chart with a metric; then no disc of phi_s or phi_v, less TOLERANCE, may leave
-// a detail of type A or B uncovered. On a sphere cap the smallest widths at the pole and at the rim, where
-// lengths are stretched three times, must agree within 10 %.
+// A picture is optimised on a chart with a metric; then no disc of phi_s or phi_v, less TOLERANCE, may
+// leave a detail of type A or B uncovered. On a sphere cap the smallest widths at the pole and at the rim,
+// where lengths are stretched three times, must agree within 10 %.
 #include "testing.h"
 #include "judge_metric.h"
 

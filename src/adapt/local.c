@@ -1,9 +1,8 @@
 // Erosion and dilation of a window by a field: part by part of one patch.
 //
 // Method:  tiles beside and below each other that have one patch are a part. For each length of the patch's
-// rows a
-//          level holds the columns where a run of that length begins; an output row is the AND of one shifted
-//          level row for each of the patch's rows. Dilations likewise, by OR.
+//          rows a level holds the columns where a run of that length begins; an output row is the AND of
+//          one shifted level row for each of the patch's rows. Dilations likewise, by OR.
 // Checked: tests/test_metric.c against the operators on whole pictures.
 #include "adapt/local.h"
 #include "base/base.h"

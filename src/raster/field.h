@@ -1,8 +1,8 @@
 // Elements that vary over the picture: on a curved surface a disc in mm is another ellipse at each place.
 // Internal.
 //
-// A picture is cut into square tiles; a tile has one metric, a metric one patch. A flat picture has a single
-// element for the whole of it and goes the way of raster/morphology.c.
+// A picture is cut into square tiles; a tile has one metric, a metric one patch. A flat picture has a
+// single element for the whole of it and goes the way of raster/morphology.c.
 #ifndef RASTER_FIELD_H
 #define RASTER_FIELD_H
 

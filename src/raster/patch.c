@@ -1,11 +1,10 @@
-// Patches: an element's pixels as one run a row; ellipses, sums, painting.
+// Patches:  an element's pixels as one run a row; ellipses, sums, painting.
 //
 // Rounding: patch_around covers its ellipse, so it is never too narrow and at most a pixel too wide along
-// rows and
-//           columns; patch_within never holds a pixel centre outside its ellipse and is at most a pixel too
-//           narrow. On the surface a pixel is as long as the stretch there.
+//           rows and columns; patch_within never holds a pixel centre outside its ellipse and is at most a
+//           pixel too narrow. On the surface a pixel is as long as the stretch there.
 // Checked:  tests/test_metric.c: in flat places equal to the elements of raster/element.c; covers, holds,
-// sums.
+//           sums.
 #include "raster/field.h"
 #include "base/base.h"
 

@@ -1,14 +1,12 @@
 // Tiles of one metric each, from a chart's knots.
 //
 // Method:  the logarithm of the metric is interpolated between the knots, taken at a tile's centre and
-// rounded:
-//          places that differ by less than 1.6 % in length are one kind. Tiles are so small that lengths
-//          change little within nearly all of them. What both leave is measured at each tile's corners
-//          (slack) and sorts tiles into kinds as well, so that widths can be made safe by it, and are made no
-//          safer elsewhere. An identity leaves none.
-// Source:  log-Euclidean means: Arsigny, Fillard, Pennec, Ayache, "Log-Euclidean metrics for fast and simple
-// calculus
-//          on diffusion tensors", 2006.
+//          rounded: places that differ by less than 1.6 % in length are one kind. Tiles are so small that
+//          lengths change little within nearly all of them. What both leave is measured at each tile's
+//          corners (slack) and sorts tiles into kinds as well, so that widths can be made safe by it, and
+//          are made no safer elsewhere. An identity leaves none.
+// Source:  log-Euclidean means: Arsigny, Fillard, Pennec, Ayache, "Log-Euclidean metrics for fast and
+//          simple calculus on diffusion tensors", 2006.
 // Checked: tests/test_metric.c.
 #include "raster/field.h"
 #include "base/base.h"

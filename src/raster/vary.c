@@ -1,17 +1,14 @@
 // Morphology with an element that varies from tile to tile.
 //
 // Method:  tiles beside each other that have one patch are one span. An erosion asks, for each word of the
-// span and
-//          row by row of the patch, whether each run of it lies in the picture: the AND of n shifted copies
-//          takes log2(n) steps in a window of 128 bits, and is kept by length for all rows of the patch. A
-//          dilation spreads the span's words likewise. The two are adjoint: x is in the erosion if and only
-//          if x's patch lies in the picture, and the dilation paints exactly those patches.
+//          span and row by row of the patch, whether each run of it lies in the picture: the AND of n
+//          shifted copies takes log2(n) steps in a window of 128 bits, and is kept by length for all rows of
+//          the patch. A dilation spreads the span's words likewise. The two are adjoint: x is in the erosion
+//          if and only if x's patch lies in the picture, and the dilation paints exactly those patches.
 // Source:  spatially variant mathematical morphology (Serra, Image Analysis and Mathematical Morphology II,
-// 1988,
-//          ch. 2); opening by adjunction.
+//          1988, ch. 2); opening by adjunction.
 // Cost:    a patch of n rows costs about 10 n operations a word of 64 px and span; words without a set pixel
-// and
-//          words all around which everything is set cost nothing.
+//          and words all around which everything is set cost nothing.
 // Checked: tests/test_metric.c against the definition; the laws of openings.
 #include "raster/field.h"
 #include "base/base.h"
