@@ -75,6 +75,13 @@ bool check_outputs(const verb *v, const settings *set, char *sentence)
         if (!check_output(v, set, set->output[i], sentence)) return false;
         path[count++] = set->output[i];
     }
+    size_t length = set->render ? strlen(set->render) : 0;
+    if (length && strcmp(set->render, "-") != 0 &&
+        (length < 4 || strcasecmp(set->render + length - 4, ".png") != 0)) {
+        snprintf(sentence, SENTENCE_BYTES, "%s: --render writes a PNG, so its name ends in .png",
+                 set->render);
+        return false;
+    }
     const char *const beside[] = {set->json, set->report, set->render};
     for (int32_t i = 0; i < OUTPUTS_BESIDE; i++) {
         if (!check_output_beside(set, beside[i], sentence)) return false;

@@ -7,7 +7,7 @@
 
 #include <jali/png.h>
 
-enum { MOST_MAP_PX = 1400, RENDER_PX = 640 };
+enum { MOST_MAP_PX = 1400, RENDER_PX = 480 };
 
 typedef struct rgb {
     uint8_t red, green, blue;

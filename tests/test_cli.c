@@ -316,6 +316,23 @@ TEST(models_are_checked)
     run("check solid.stl -o a.png", 2, "not an option of jali check");
 }
 
+TEST(models_are_drawn_and_measured)
+{
+    if (access("rings.png", F_OK) != 0) run("sample rings -o rings.png --size 300", 0, "");
+    run("carve rings.png -o drawn.stl --width 30 --no-predict --render beside.png --size 64", 0, "");
+    CHECK(access("beside.png", F_OK) == 0);
+    run("render drawn.stl -o day.png --size 64", 0, "");
+    run("render drawn.stl -o night.png --size 64 --lamp --view 0,1,-1", 0, "");
+    run("render drawn.stl -o day.png", 2, "exists");
+    run("render drawn.stl -o day.jpg", 2, "does not write this type");
+    run("render rings.png -o none.png", 4, "");
+    run("render drawn.stl -o none.png --size 9000", 2, "8192");
+    run("carve rings.png -o twice.stl --render day.bmp", 2, "ends in .png");
+    CHECK(access("none.png", F_OK) != 0);
+    run("check drawn.stl --walls", 0, "");
+    CHECK(strstr(printed, "The thinnest wall measures"));
+}
+
 TEST(earlier_output_stays_untouched)
 {
     char kept[TEXT_BYTES];
@@ -430,6 +447,7 @@ int main(void)
         cmocka_unit_test(threads_do_not_change_a_file),
         cmocka_unit_test(a_picture_that_cannot_be_carved_is_a_sentence),
         cmocka_unit_test(models_are_checked),
+        cmocka_unit_test(models_are_drawn_and_measured),
         cmocka_unit_test(earlier_output_stays_untouched),
         cmocka_unit_test(a_full_disk_is_a_sentence),
         cmocka_unit_test(an_unwritable_folder_is_a_sentence),
