@@ -130,7 +130,8 @@ static vec mean_of_samples(const canvas *c, int32_t x, int32_t y)
     vec sum = {0};
     uint32_t side = c->s->draft ? 2 : GRID;
     for (uint32_t i = 0; i < side * side; i++) {
-        vec direction = direction_at(c, x + (i % side + 0.5) / side, y + (i / side + 0.5) / side);
+        uint32_t column = i % side, row = i / side;
+        vec direction = direction_at(c, x + (column + 0.5) / side, y + (row + 0.5) / side);
         sight seen = look(c->s, c->s->eye, direction);
         light l = light_near(c, x, y, &seen, turn_of(x, y) + 5 * i);
         sum = add(sum, colour_of(c->s, &seen, l.direct, l.ambient));

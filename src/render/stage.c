@@ -4,7 +4,7 @@
 // frame's sides, each touches the mesh, so the eye follows from four maxima over the vertices.
 //
 // The lamp goes to the roomiest of 7 x 7 x 7 points of the object's box: the one farthest from any surface,
-// of those that see the surface's outer side in no direction and the surface in at least a third of them.
+// of those that see the surface's outer side in no direction and the surface in at least half of them.
 // Where no point is like that (a plate, a solid), it stands behind the object.
 #include "render/stage.h"
 
@@ -120,8 +120,8 @@ static void set_lamp(stage *s)
     double best = 0;
     vec low = vec_of(scene->low), extent = subtract(vec_of(scene->high), low);
     for (int32_t i = 0; i < STEPS * STEPS * STEPS; i++) {
-        vec share = {(i % STEPS + 0.5) / STEPS, (i / STEPS % STEPS + 0.5) / STEPS,
-                     (i / STEPS / STEPS + 0.5) / STEPS};
+        int32_t x = i % STEPS, y = i / STEPS % STEPS, z = i / STEPS / STEPS;
+        vec share = {(x + 0.5) / STEPS, (y + 0.5) / STEPS, (z + 0.5) / STEPS};
         vec p = add(low, times(extent, share));
         double room = room_at(scene, p);
         if (room <= best * 1.0001) continue;
