@@ -4,7 +4,7 @@
 // frame's sides, each touches the mesh, so the eye follows from four maxima over the vertices.
 //
 // The lamp goes to the roomiest of 7 x 7 x 7 points of the object's box: the one farthest from any surface,
-// of those that see the surface's outer side in no direction and the surface in at least half of them.
+// of those that lie in no solid (no ray meets a triangle from behind) and see it in half of all directions.
 // Where no point is like that (a plate, a solid), it stands behind the object.
 #include "render/stage.h"
 
