@@ -318,10 +318,12 @@ static jali_status take_faces(jali_context *ctx, growing *g, int32_t first)
         if (!g->taken[face] && keeps_disc(g, face)) TRY(take(ctx, g, face));
     }
     for (int32_t f = 0; f < d->face_count; f++) {
-        d->cut[f] = 0;
+        d->border[f] = 0;
         for (int k = 0; k < 3; k++) {
             int32_t o = g->linked->beside[4 * d->face[f] + k];
-            if (o != NO_SIDE && !g->taken[o >> 2] && !in_window(g, o >> 2)) d->cut[f] |= (uint8_t)(1 << k);
+            if (o == NO_SIDE || !g->taken[o >> 2]) d->border[f] |= (uint8_t)(1 << k);
+            if (o != NO_SIDE && !g->taken[o >> 2] && !in_window(g, o >> 2))
+                d->border[f] |= (uint8_t)(16 << k);
         }
     }
 done:
@@ -339,7 +341,7 @@ jali_status grow_disc(jali_context *ctx, const jali_mesh *mesh, const sides *lin
     TRY(ARENA(ctx, d->at, vertices));
     TRY(ARENA(ctx, d->face, faces));
     TRY(ARENA(ctx, d->corner, faces));
-    TRY(ARENA(ctx, d->cut, faces));
+    TRY(ARENA(ctx, d->border, faces));
     arena_mark mark = arena_here(ctx);
     TRY(ARENA(ctx, g.normal, vertices));
     TRY(ARENA(ctx, g.right, vertices));

@@ -12,8 +12,9 @@ typedef struct disc {
     int32_t *vertex;      // [vertex_count] of the mesh
     int32_t *face;        // [face_count] of the mesh, the first one is under the centre
     int32_t (*corner)[3]; // [face_count] as vertices of the disc
-    uint8_t *cut;         // [face_count] bit k: the surface goes on across side k, but was not wanted
-    double (*at)[2];      // [vertex_count] place in the plane, mm, x right, y up, the centre near the origin
+    uint8_t *border; // [face_count] bit k: side k is of the border; bit 4 + k: the surface goes on there,
+                     // but was not wanted
+    double (*at)[2]; // [vertex_count] place in the plane, mm, x right, y up, the centre near the origin
 } disc;
 
 /// Where a disc begins, and which way is up there.
@@ -34,7 +35,8 @@ jali_status grow_disc(jali_context *ctx, const jali_mesh *mesh, const sides *lin
 
 /// Flatten a disc: a map one-to-one on each face that changes lengths as little as it can.
 ///   inout  d->at    a first guess, which may fold; the result
-///   fails  JALI_NO_RESULT (no flattening without folds was found), JALI_NO_MEMORY, JALI_CANCELLED
-jali_status flatten_disc(jali_context *ctx, disc *d);
+///   out    folded   none was found: faces so thin that rounding turns them over
+///   fails  JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+jali_status flatten_disc(jali_context *ctx, disc *d, bool *folded);
 
 #endif

@@ -16,15 +16,22 @@
 static const double SLACK[] = {1.15, 1.5, 2.2}; // sizes of the disc over that of the window
 static const double STEEPEST = 0.99;            // up along the normal, beyond: the back is up
 static const double MOST_DISTORTION = 3;        // largest over least stretch
-enum { OFFER_STEPS = 24 };
+static const double OFFER_STEP = 0.85;          // from width to width, to find one that fits
+static const double LEAST_OFFER = 0.1;          // of the width
+enum { OFFER_HALVINGS = 3 };
 
 typedef struct flat_work {
     const jali_surface *surface;
     const flat_window *window;
     double half_mm[2]; // of the window
     double up[3];
+    sides linked;
     disc_seed seed;
     disc d;
+    laid *l;
+    bool folded, covered; // the disc has no flat layout; its border is out of the window
+    double stretch[2];    // least and largest inside the window
+    int32_t worst;        // the face where it is further from 1
 } flat_work;
 
 static double dot(const double a[3], const double b[3])
@@ -166,13 +173,15 @@ static void turn_upright(flat_work *w)
     double sum[2] = {0, 0}, reach = MIN(w->half_mm[0], w->half_mm[1]) / 2;
     for (int32_t f = 0; f < d->face_count; f++) {
         const double *p[3] = {d->at[d->corner[f][0]], d->at[d->corner[f][1]], d->at[d->corner[f][2]]};
-        double a[3], b[3];
-        if (f > 0 && hypot(p[0][0], p[0][1]) > reach) continue;
+        double a[3], b[3], x_mean = (p[0][0] + p[1][0] + p[2][0]) / 3,
+                           y_mean = (p[0][1] + p[1][1] + p[2][1]) / 3;
+        double share = f == 0 ? 1 : 1 - hypot(x_mean, y_mean) / reach; // less further out
+        if (share <= 0) continue;
         face_edges(d->mesh, d->face[f], a, b);
         double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), ua = dot(w->up, a), ub = dot(w->up, b);
         double area = sqrt(MAX(aa * bb - ab * ab, 1e-30)); // up = (x a + y b) / area^2, and a normal part
         double x = (ua * bb - ub * ab) / area, y = (ub * aa - ua * ab) / area;
-        for (int i = 0; i < 2; i++) sum[i] += x * (p[1][i] - p[0][i]) + y * (p[2][i] - p[0][i]);
+        for (int i = 0; i < 2; i++) sum[i] += share * (x * (p[1][i] - p[0][i]) + y * (p[2][i] - p[0][i]));
     }
     double length = hypot(sum[0], sum[1]);
     if (!(length > 0)) return;
@@ -198,38 +207,17 @@ static double reached(const flat_work *w, const double *const p[], int count)
     return scale;
 }
 
-// Does a side where the disc was cut off come into the window?
-static bool cut_short(const flat_work *w)
+// Does a side of the border come into the window? `which` is 4 for those where more of the surface could have
+// been taken, 0 for all.
+static bool ends_inside(const flat_work *w, int which)
 {
     const disc *d = &w->d;
     for (int32_t f = 0; f < d->face_count; f++)
         for (int k = 0; k < 3; k++) {
             const double *p[2] = {d->at[d->corner[f][(k + 1) % 3]], d->at[d->corner[f][(k + 2) % 3]]};
-            if (d->cut[f] >> k & 1 && reached(w, p, 2) < 1) return true;
+            if (d->border[f] >> (which + k) & 1 && reached(w, p, 2) < 1) return true;
         }
     return false;
-}
-
-static jali_status flatten_window(jali_context *ctx, flat_work *w)
-{
-    jali_status status;
-    const jali_mesh *mesh = &w->surface->mesh;
-    sides linked = {0};
-    TRY(sides_create(ctx, mesh->vertex_count, mesh->triangle_count, (const int32_t(*)[3])mesh->triangle,
-                     &linked));
-    arena_mark mark = arena_here(ctx);
-    for (size_t i = 0; i < sizeof SLACK / sizeof *SLACK; i++) {
-        double half[2] = {SLACK[i] * w->half_mm[0], SLACK[i] * w->half_mm[1]};
-        arena_rewind(ctx, mark);
-        TRY(grow_disc(ctx, mesh, &linked, &w->seed, half, &w->d));
-        TRY(flatten_disc(ctx, &w->d));
-        centre_disc(w);
-        turn_upright(w);
-        if (!cut_short(w)) break;
-    }
-done:
-    sides_free(ctx, &linked);
-    return status;
 }
 
 // --- How much it is stretched
@@ -263,56 +251,126 @@ done:
     return status;
 }
 
-// Least and largest stretch where the window, scaled, reaches, and the face of the one further from 1.
-static int32_t stretches(const flat_work *w, const double (*metric)[3], double scale, double stretch[2])
-{
-    const disc *d = &w->d;
-    int32_t face[2] = {0, 0};
-    stretch[0] = INFINITY;
-    stretch[1] = 0;
-    for (int32_t f = 0; f < d->face_count; f++) {
-        const double *p[3] = {d->at[d->corner[f][0]], d->at[d->corner[f][1]], d->at[d->corner[f][2]]};
-        if (f > 0 && reached(w, p, 3) >= scale) continue;
-        double mean = (metric[f][0] + metric[f][2]) / 2;
-        double apart = hypot((metric[f][0] - metric[f][2]) / 2, metric[f][1]);
-        double here[2] = {sqrt(MAX(mean - apart, 0)), sqrt(mean + apart)};
-        if (here[0] < stretch[0]) face[0] = f;
-        if (here[1] > stretch[1]) face[1] = f;
-        stretch[0] = MIN(stretch[0], here[0]);
-        stretch[1] = MAX(stretch[1], here[1]);
-    }
-    return face[stretch[0] * stretch[1] > 1];
-}
-
-static jali_status check_distortion(jali_context *ctx, const flat_work *w, const laid *l)
+static jali_status measure(jali_context *ctx, flat_work *w)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    double(*metric)[3], stretch[2], here[2], fits = 0, fails = 1;
-    TRY(ARENA(ctx, metric, w->d.face_count + 1));
-    TRY(mean_metrics(ctx, l, &w->d, metric));
-    int32_t worst = stretches(w, (const double(*)[3])metric, 1, stretch);
-    if (stretch[1] <= MOST_DISTORTION * stretch[0]) goto done;
-    for (int i = 0; i < OFFER_STEPS; i++) {
-        double middle = (fits + fails) / 2;
-        stretches(w, (const double(*)[3])metric, middle, here);
-        if (here[1] <= MOST_DISTORTION * here[0])
-            fits = middle;
-        else
-            fails = middle;
+    const disc *d = &w->d;
+    double(*metric)[3];
+    int32_t face[2] = {0, 0};
+    w->stretch[0] = INFINITY;
+    w->stretch[1] = 0;
+    TRY(ARENA(ctx, metric, d->face_count + 1));
+    TRY(mean_metrics(ctx, w->l, d, metric));
+    for (int32_t f = 0; f < d->face_count; f++) {
+        const double *p[3] = {d->at[d->corner[f][0]], d->at[d->corner[f][1]], d->at[d->corner[f][2]]};
+        if (f > 0 && reached(w, p, 3) >= 1) continue;
+        double mean = (metric[f][0] + metric[f][2]) / 2;
+        double apart = hypot((metric[f][0] - metric[f][2]) / 2, metric[f][1]);
+        double here[2] = {sqrt(MAX(mean - apart, 0)), sqrt(mean + apart)};
+        if (here[0] < w->stretch[0]) face[0] = f;
+        if (here[1] > w->stretch[1]) face[1] = f;
+        w->stretch[0] = MIN(w->stretch[0], here[0]);
+        w->stretch[1] = MAX(w->stretch[1], here[1]);
     }
-    double width = floor(20 * (fits * w->half_mm[0] - w->window->ring_mm[0])) / 10;
-    const double *at = w->d.mesh->vertex[w->d.mesh->triangle[w->d.face[worst]][0]];
-    char offer[96] = "another place (--at) is needed";
-    if (width > 1)
-        snprintf(offer, sizeof offer, "a width of %.4g mm or another place (--at) is needed", width);
-    status =
-        fail(ctx, JALI_NO_RESULT,
-             "laid flat, the surface is stretched %.2f to %.2f times, worst at (%.4g, %.4g, %.4g) mm; at "
-             "most %g to one is accepted: %s",
-             stretch[0], stretch[1], at[0], at[1], at[2], MOST_DISTORTION, offer);
+    w->worst = d->face[face[w->stretch[0] * w->stretch[1] > 1]];
 done:
     arena_rewind(ctx, mark);
+    return status;
+}
+
+static bool too_stretched(const flat_work *w)
+{
+    return w->stretch[1] > MOST_DISTORTION * w->stretch[0];
+}
+
+// --- Steps
+
+static void publish(const flat_work *w)
+{
+    for (int32_t t = 0; t < w->surface->mesh.triangle_count; t++)
+        for (int k = 0; k < 3; k++) w->l->at[t][k][0] = w->l->at[t][k][1] = NAN;
+    for (int32_t f = 0; f < w->d.face_count; f++)
+        for (int k = 0; k < 3; k++)
+            memcpy(w->l->at[w->d.face[f]][k], w->d.at[w->d.corner[f][k]], sizeof *w->d.at);
+}
+
+// Flatten for a picture of a share of the size: with as large a disc as it takes.
+static jali_status try_scale(jali_context *ctx, flat_work *w, double scale)
+{
+    jali_status status = JALI_OK;
+    arena_mark mark = arena_here(ctx);
+    for (int k = 0; k < 2; k++) w->half_mm[k] = scale * w->window->size_mm[k] / 2 + w->window->ring_mm[k];
+    find_frame(w);
+    for (size_t i = 0; i < sizeof SLACK / sizeof *SLACK; i++) {
+        double half[2] = {SLACK[i] * w->half_mm[0], SLACK[i] * w->half_mm[1]};
+        arena_rewind(ctx, mark);
+        TRY(grow_disc(ctx, &w->surface->mesh, &w->linked, &w->seed, half, &w->d));
+        TRY(flatten_disc(ctx, &w->d, &w->folded));
+        if (w->folded) break;
+        centre_disc(w);
+        turn_upright(w);
+        publish(w);
+        TRY(measure(ctx, w));
+        w->covered = !ends_inside(w, 0);
+        if (too_stretched(w) || !ends_inside(w, 4)) break;
+    }
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+static bool fits(const flat_work *w)
+{
+    return !w->folded && w->covered && !too_stretched(w);
+}
+
+// The largest share of the picture that fits, nearly; 0: none does.
+static jali_status largest_fit(jali_context *ctx, flat_work *w, double *scale)
+{
+    jali_status status;
+    double good = 1, bad = 1;
+    *scale = 0;
+    do {
+        bad = good;
+        good *= OFFER_STEP;
+        if (good < LEAST_OFFER) return JALI_OK;
+        TRY(try_scale(ctx, w, good));
+    } while (!fits(w));
+    for (int i = 0; i < OFFER_HALVINGS; i++) {
+        double middle = (good + bad) / 2;
+        TRY(try_scale(ctx, w, middle));
+        *(fits(w) ? &good : &bad) = middle;
+    }
+    *scale = good;
+done:
+    return status;
+}
+
+static jali_status refuse(jali_context *ctx, flat_work *w)
+{
+    jali_status status;
+    char fault[200], offer[80] = "another place (--at) is needed";
+    double scale;
+    const double *at = w->surface->mesh.vertex[w->surface->mesh.triangle[w->worst][0]];
+    if (w->folded)
+        snprintf(fault, sizeof fault, "the %d triangles around the picture do not lie flat without folds",
+                 w->d.face_count);
+    else if (too_stretched(w))
+        snprintf(fault, sizeof fault,
+                 "laid flat, the surface is stretched %.2f to %.2f times, worst at (%.4g, %.4g, %.4g) mm; at "
+                 "most %g to one is accepted",
+                 w->stretch[0], w->stretch[1], at[0], at[1], at[2], MOST_DISTORTION);
+    else
+        snprintf(fault, sizeof fault,
+                 "laid flat, the surface ends within the picture's window of %.4g x %.4g mm",
+                 2 * w->half_mm[0], 2 * w->half_mm[1]);
+    TRY(largest_fit(ctx, w, &scale));
+    if (scale > 0)
+        snprintf(offer, sizeof offer, "a width of %.4g mm fits there",
+                 floor(scale * w->window->size_mm[0] * 100) / 100);
+    status = fail(ctx, JALI_NO_RESULT, "%s; %s", fault, offer);
+done:
     return status;
 }
 
@@ -320,20 +378,16 @@ jali_status lay_by_flattening(jali_context *ctx, const jali_surface *surface, co
                               laid *l)
 {
     jali_status status;
-    arena_mark mark = arena_here(ctx);
-    flat_work w = {.surface = surface, .window = window};
-    for (int i = 0; i < 2; i++) w.half_mm[i] = window->size_mm[i] / 2 + window->ring_mm[i];
+    const jali_mesh *mesh = &surface->mesh;
+    flat_work w = {.surface = surface, .window = window, .l = l};
     TRY(laid_create(ctx, surface, l));
+    TRY(sides_create(ctx, mesh->vertex_count, mesh->triangle_count, (const int32_t(*)[3])mesh->triangle,
+                     &w.linked));
     find_nearest(&w);
-    find_frame(&w);
-    TRY(flatten_window(ctx, &w));
-    for (int32_t t = 0; t < surface->mesh.triangle_count; t++)
-        for (int k = 0; k < 3; k++) l->at[t][k][0] = l->at[t][k][1] = NAN;
-    for (int32_t f = 0; f < w.d.face_count; f++)
-        for (int k = 0; k < 3; k++) memcpy(l->at[w.d.face[f]][k], w.d.at[w.d.corner[f][k]], sizeof *w.d.at);
-    TRY(check_distortion(ctx, &w, l));
+    TRY(try_scale(ctx, &w, 1));
+    if (!fits(&w)) TRY(refuse(ctx, &w));
 done:
-    arena_rewind(ctx, mark);
+    sides_free(ctx, &w.linked);
     if (status != JALI_OK) laid_free(ctx, l);
     return status;
 }

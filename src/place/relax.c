@@ -151,6 +151,7 @@ jali_status relax(jali_context *ctx, flattening *w)
         keep(&r);
         quiet = before - now < ENOUGH * (now + 1e-3 * area) ? quiet + 1 : 0;
     }
+
 done:
     arena_rewind(ctx, mark);
     return status;

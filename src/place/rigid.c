@@ -146,7 +146,7 @@ bool unfolded(const flattening *w)
     return true;
 }
 
-jali_status flatten_disc(jali_context *ctx, disc *d)
+jali_status flatten_disc(jali_context *ctx, disc *d, bool *folded)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
@@ -160,15 +160,9 @@ jali_status flatten_disc(jali_context *ctx, disc *d)
         TRY(lay_on_circle(ctx, &w));
         turn_faces(&w, TURNING_ROUNDS_CIRCLE);
         if (!unfolded(&w)) TRY(lay_on_circle(ctx, &w));
-        if (!unfolded(&w)) {
-            status = fail(ctx, JALI_NO_RESULT,
-                          "the surface could not be flattened without folds over the %d triangles of the "
-                          "picture's window; a smaller picture or another place (--at) may do",
-                          d->face_count);
-            goto done;
-        }
     }
-    TRY(relax(ctx, &w));
+    *folded = !unfolded(&w);
+    if (!*folded) TRY(relax(ctx, &w));
 done:
     sparse_factor_free(ctx, &w.laplacian);
     arena_rewind(ctx, mark);
