@@ -391,6 +391,51 @@ TEST(wide_patches_cross_words)
     free(chart.metric);
 }
 
+// A field that remembers against one that does not, over pictures that change here and there.
+TEST(a_memory_changes_no_result)
+{
+    enum { WIDTH = 500, HEIGHT = 300 };
+    uint64_t seed = 12;
+    jali_chart chart = curved_chart(WIDTH, HEIGHT, 16, wavy_metric);
+    tiling t;
+    field forgetful, remembering;
+    jali_bitmap a = random_bitmap(&seed, WIDTH, HEIGHT, 97), scratch, got, want;
+    CHECK_OK(tiling_create(ctx, &chart, WIDTH, HEIGHT, 0, 0, 1, &t));
+    CHECK_OK(field_of_discs(ctx, &t, 9, 0, false, false, &forgetful));
+    CHECK_OK(field_of_discs(ctx, &t, 9, 0, false, false, &remembering));
+    CHECK_OK(field_remember(ctx, &remembering));
+    CHECK_OK(jali_bitmap_create(ctx, WIDTH, HEIGHT, &scratch));
+    CHECK_OK(jali_bitmap_create(ctx, WIDTH, HEIGHT, &got));
+    CHECK_OK(jali_bitmap_create(ctx, WIDTH, HEIGHT, &want));
+    for (int32_t round = 0; round < 60; round++) {
+        bool outside = round / 20 != 1; // another surrounding forgets
+        for (int32_t dot = 0; dot < round % 5; dot++) {
+            int32_t x = (int32_t)(next_random(&seed) >> 40) % WIDTH,
+                    y = (int32_t)(next_random(&seed) >> 40) % HEIGHT;
+            paint_patch(&a, x, y, patch_at(&forgetful, x, y), round % 2);
+        }
+        CHECK_OK(field_open(ctx, &a, &forgetful, outside, &scratch, &want));
+        CHECK_OK(field_open(ctx, &a, &remembering, outside, &scratch, &got));
+        CHECK(same_bitmap(&got, &want));
+        CHECK_OK(field_close(ctx, &a, &forgetful, outside, &scratch, &want));
+        jali_bitmap_free(ctx, &got);
+        CHECK_OK(jali_bitmap_copy(ctx, &a, &got));
+        CHECK_OK(field_close(ctx, &got, &remembering, outside, &scratch, &got)); // in place
+        CHECK(same_bitmap(&got, &want));
+        CHECK_OK(field_dilate(ctx, &a, &forgetful, outside, &want));
+        CHECK_OK(field_dilate(ctx, &a, &remembering, outside, &got));
+        CHECK(same_bitmap(&got, &want));
+    }
+    jali_bitmap_free(ctx, &a);
+    jali_bitmap_free(ctx, &scratch);
+    jali_bitmap_free(ctx, &got);
+    jali_bitmap_free(ctx, &want);
+    field_free(ctx, &forgetful);
+    field_free(ctx, &remembering);
+    tiling_free(ctx, &t);
+    free(chart.metric);
+}
+
 TEST(operators_give_the_same_for_any_number_of_threads)
 {
     uint64_t seed = 8;
@@ -429,7 +474,9 @@ static jali_status open_on_a_curve(jali_context *limited, void *data)
     if (status == JALI_OK) status = jali_bitmap_create(limited, 90, 40, &scratch);
     if (status == JALI_OK) status = tiling_create(limited, chart, 90, 40, 0, 0, 1, &t);
     if (status == JALI_OK) status = field_of_discs(limited, &t, 6, 0, false, false, &f);
-    if (status == JALI_OK) status = field_open(limited, &a, &f, true, &scratch, &a);
+    if (status == JALI_OK) status = field_remember(limited, &f);
+    for (int32_t twice = 0; twice < 2; twice++)
+        if (status == JALI_OK) status = field_open(limited, &a, &f, true, &scratch, &a);
     field_free(limited, &f);
     tiling_free(limited, &t);
     jali_bitmap_free(limited, &a);
@@ -456,6 +503,7 @@ int main(void)
         cmocka_unit_test(operators_are_their_definition),
         cmocka_unit_test(windows_see_what_the_whole_picture_sees),
         cmocka_unit_test(wide_patches_cross_words),
+        cmocka_unit_test(a_memory_changes_no_result),
         cmocka_unit_test(operators_give_the_same_for_any_number_of_threads),
         cmocka_unit_test(every_allocation_refused_once),
     };

@@ -232,6 +232,8 @@ jali_status jali_elements_create(jali_context *ctx, const jali_adapt_options *op
     e->height_px = height_px;
     TRY(mask_widths(ctx, &e->made_for, &grid, 0, &e->mask));
     TRY(printed_widths(ctx, &e->made_for, &grid, 0, &e->print));
+    TRY(field_remember(ctx, &e->mask.solid)); // the finish changes little from round to round
+    TRY(field_remember(ctx, &e->mask.hollow));
     *elements = e;
     e = NULL;
 done:

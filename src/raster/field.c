@@ -117,6 +117,7 @@ void field_free(jali_context *ctx, field *f)
     element_free(ctx, &f->whole);
     release(ctx, f->patch);
     release(ctx, f->which);
+    field_memory_free(ctx, f->memory);
     *f = (field){0};
 }
 

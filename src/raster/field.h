@@ -85,7 +85,13 @@ typedef struct field {
     int32_t left, right, above, below; // how far any patch reaches beyond its pixel, >= 0
     int32_t least, most;               // of the patches' sizes
     bool own_pixel;                    // every patch holds the pixel it is set on
+    struct field_memory *memory;       // of the last operations, or NULL
 } field;
+
+/// Let a field that varies keep source and result of its last erosion and dilation of either tone: the next
+/// one of a picture that differs little looks at the differences alone. Same results; 8 bitmaps of memory.
+jali_status field_remember(jali_context *ctx, field *f);
+void field_memory_free(jali_context *ctx, struct field_memory *m);
 
 /// A flat field; takes the element over.
 jali_status field_of_element(jali_context *ctx, element *e, field *f);

@@ -13,7 +13,7 @@
 #include "raster/field.h"
 #include "base/base.h"
 
-enum { STRIP_ROWS = 64, MOST_TILE_ROWS = 64 };
+enum { BLOCK_ROWS = 16, STRIP_ROWS = 64, MOST_TILE_ROWS = 64 };
 
 __extension__ typedef unsigned __int128 wide;
 
@@ -24,7 +24,10 @@ typedef struct varying {
     uint64_t *word; // [height + above + below][pitch]: the source in a margin of what lies beyond
     uint16_t *deep; // of each such word: rows up to this one in which it and its two neighbours are all set
     int64_t pitch, lead;
-    int32_t above, below; // rows of that margin
+    int32_t above, below;  // rows of that margin
+    const uint8_t *active; // [blocks][stride]: words of the result that are wanted, BLOCK_ROWS rows at once;
+                           // the others are known. NULL: all are wanted
+    const uint8_t *sources; // the same for what can paint into those
 } varying;
 
 // Row y of the padded source, at column 0.
@@ -141,9 +144,12 @@ static wide spread_over(spread *s, int32_t n)
     return s->run[n] = w;
 }
 
-// Set the columns x + i .. x + i + n - 1 for each bit i, those of the bitmap's row alone.
-static void spread_runs(spread *s, int32_t x, int32_t n, uint64_t *row, int64_t stride)
+// Set the columns x + i .. x + i + n - 1 for each bit i, in the words of row y that are wanted.
+static void spread_runs(const varying *v, spread *s, int32_t x, int32_t n, int32_t y)
 {
+    int64_t stride = v->dst->stride;
+    uint64_t *row = v->dst->word + y * stride;
+    const uint8_t *active = v->active ? v->active + y / BLOCK_ROWS * stride : NULL;
     while (n > 0) {
         int32_t part = MIN(n, 64), bit = x & 63;
         int64_t at = x >> 6;
@@ -151,9 +157,31 @@ static void spread_runs(spread *s, int32_t x, int32_t n, uint64_t *row, int64_t 
         uint64_t out[3] = {(uint64_t)(w << bit), (uint64_t)(w >> (64 - bit)),
                            bit ? (uint64_t)(w >> (128 - bit)) : 0};
         for (int64_t k = 0; k < 3; k++)
-            if (at + k >= 0 && at + k < stride) row[at + k] |= out[k];
+            if (at + k >= 0 && at + k < stride && (!active || active[at + k])) row[at + k] |= out[k];
         x += part;
         n -= part;
+    }
+}
+
+// Whether a map marks word i of row y; beyond the bitmap the nearest word counts.
+static bool marks(const varying *v, const uint8_t *map, int32_t y, int64_t i)
+{
+    if (!map) return true;
+    y = MIN(MAX(y, 0), v->dst->height_px - 1);
+    i = MIN(MAX(i, 0), v->dst->stride - 1);
+    return map[y / BLOCK_ROWS * v->dst->stride + i];
+}
+
+// Clear the words of the rows y0 .. y1-1 that are wanted.
+static void clear_rows(const varying *v, int32_t y0, int32_t y1)
+{
+    for (int32_t y = y0; y < y1; y++) {
+        uint64_t *row = v->dst->word + (int64_t)y * v->dst->stride;
+        if (!v->active)
+            memset(row, 0, (size_t)v->dst->stride * sizeof *row);
+        else
+            for (int64_t i = 0; i < v->dst->stride; i++)
+                if (marks(v, v->active, y, i)) row[i] = 0;
     }
 }
 
@@ -224,6 +252,7 @@ static void erode_span(const varying *v, const patch *p, int32_t x0, int32_t x1,
         for (int32_t y = y0; y < y1; y++) {
             uint64_t *row = &fits[y - y0], here = columns_of_word(x0, x1, i);
             if (v->f->own_pixel) here &= padded_row(v, y)[i];
+            if (!marks(v, v->active, y, i)) here = 0;
             bool decided = !here || is_deep(v, p, y, i);
             if (decided) out[(y - y0) * v->dst->stride] |= here;
             *row = decided ? 0 : here;
@@ -242,8 +271,7 @@ static void erode_tiles(void *shared, int32_t j)
     const varying *v = shared;
     const tiling *t = v->f->tiles;
     int32_t y0 = j * t->tile_px, y1 = MIN(y0 + t->tile_px, t->height_px);
-    memset(v->dst->word + y0 * v->dst->stride, 0,
-           (size_t)((y1 - y0) * v->dst->stride) * sizeof *v->dst->word);
+    clear_rows(v, y0, y1);
     for (int32_t i = 0, end; i < t->columns; i = end) {
         end = span_end(v->f, (int64_t)j * t->columns, i);
         const patch *p = patch_of_tile(v->f, (int64_t)j * t->columns + i);
@@ -265,17 +293,18 @@ static void dilate_row(const varying *v, int32_t source, int32_t y0, int32_t y1)
         int32_t x1 = end < t->columns ? end * t->tile_px : t->width_px + beyond;
         for (int32_t w = x0 >> 6; w <= (x1 - 1) >> 6; w++) {
             uint64_t bits = row[w] & columns_of_word(x0, x1, w);
-            if (!bits) continue;
+            if (!bits || !marks(v, v->sources, source, w)) continue;
             if (w >= 0 && w < v->dst->stride && is_deep(v, p, source, w)) { // it paints what is set anyway
-                if (source >= y0 && source < y1) v->dst->word[(int64_t)source * v->dst->stride + w] |= bits;
+                if (source >= y0 && source < y1 && marks(v, v->active, source, w))
+                    v->dst->word[(int64_t)source * v->dst->stride + w] |= bits;
                 continue;
             }
             spread runs;
             runs.known = 1;
             runs.run[1] = bits;
             for (int32_t k = MAX(0, y0 - source - p->top); k < MIN(p->rows, y1 - source - p->top); k++)
-                spread_runs(&runs, 64 * w + p->span[k][0], p->span[k][1] - p->span[k][0] + 1,
-                            v->dst->word + (int64_t)(source + p->top + k) * v->dst->stride, v->dst->stride);
+                spread_runs(v, &runs, 64 * w + p->span[k][0], p->span[k][1] - p->span[k][0] + 1,
+                            source + p->top + k);
         }
     }
 }
@@ -285,7 +314,7 @@ static void dilate_strip(void *shared, int32_t strip)
     const varying *v = shared;
     jali_bitmap *dst = v->dst;
     int32_t y0 = strip * STRIP_ROWS, y1 = MIN(y0 + STRIP_ROWS, dst->height_px);
-    memset(dst->word + y0 * dst->stride, 0, (size_t)((y1 - y0) * dst->stride) * sizeof *dst->word);
+    clear_rows(v, y0, y1);
     int32_t first = MAX(y0 - v->f->below, -v->above), last = MIN(y1 + v->f->above, dst->height_px + v->below);
     for (int32_t source = first; source < last; source++) dilate_row(v, source, y0, y1);
     int64_t whole = dst->width_px / 64;
@@ -293,8 +322,114 @@ static void dilate_strip(void *shared, int32_t strip)
     for (int32_t y = y0; y < y1; y++) {
         uint64_t *out = dst->word + (int64_t)y * dst->stride;
         for (int64_t i = 0; i < dst->stride; i++)
-            out[i] = (out[i] ^ v->flip) & (i < whole ? ~UINT64_C(0) : i == whole ? inside : 0);
+            if (marks(v, v->active, y, i))
+                out[i] = (out[i] ^ v->flip) & (i < whole ? ~UINT64_C(0) : i == whole ? inside : 0);
     }
+}
+
+// --- What the last operations found
+
+// Source and result of an operation; empty when nothing is known.
+typedef struct known {
+    jali_bitmap src, dst;
+    bool outside;
+} known;
+
+typedef struct field_memory {
+    known erosion[2], dilation[2]; // [flip]
+} field_memory;
+
+jali_status field_remember(jali_context *ctx, field *f)
+{
+    return f->which && !f->memory ? ALLOCATE_CLEARED(ctx, f->memory, 1) : JALI_OK;
+}
+
+static void forget(jali_context *ctx, known *k)
+{
+    jali_bitmap_free(ctx, &k->src);
+    jali_bitmap_free(ctx, &k->dst);
+}
+
+void field_memory_free(jali_context *ctx, field_memory *m)
+{
+    for (int32_t flip = 0; m && flip < 2; flip++) {
+        forget(ctx, &m->erosion[flip]);
+        forget(ctx, &m->dilation[flip]);
+    }
+    release(ctx, m);
+}
+
+// Mark all words within the patches' reach of a marked one.
+static void widen_marks(const field *f, const jali_bitmap *a, const uint8_t *from, uint8_t *to)
+{
+    int64_t blocks = (a->height_px + BLOCK_ROWS - 1) / BLOCK_ROWS,
+            wide_by = (MAX(f->left, f->right) + 63) / 64;
+    int64_t high_by = (MAX(f->above, f->below) + BLOCK_ROWS - 1) / BLOCK_ROWS;
+    memset(to, 0, (size_t)(blocks * a->stride));
+    for (int64_t b = 0; b < blocks; b++)
+        for (int64_t i = 0; i < a->stride; i++) {
+            if (!from[b * a->stride + i]) continue;
+            int64_t first = MAX(i - wide_by, 0), count = MIN(i + wide_by, a->stride - 1) - first + 1;
+            for (int64_t k = MAX(b - high_by, 0); k <= MIN(b + high_by, blocks - 1); k++)
+                memset(to + k * a->stride + first, 1, (size_t)count);
+        }
+}
+
+static bool is_known(const known *k, const jali_bitmap *src, bool outside)
+{
+    return k->dst.word && k->outside == outside && k->src.width_px == src->width_px &&
+           k->src.height_px == src->height_px;
+}
+
+// What of the result must be made anew, given the last one; then dst begins as that.
+static jali_status find_active(jali_context *ctx, const field *f, const jali_bitmap *src, const known *k,
+                               varying *v)
+{
+    jali_status status;
+    uint8_t *changed, *active, *sources;
+    size_t size = (size_t)((src->height_px + BLOCK_ROWS - 1) / BLOCK_ROWS * src->stride);
+    TRY(ARENA(ctx, changed, size + 1));
+    TRY(ARENA(ctx, active, size + 1));
+    TRY(ARENA(ctx, sources, size + 1));
+    memset(changed, 0, size);
+    for (int32_t y = 0; y < src->height_px; y++)
+        for (int64_t i = 0; i < src->stride; i++)
+            changed[y / BLOCK_ROWS * src->stride + i] |=
+                src->word[y * src->stride + i] != k->src.word[y * src->stride + i];
+    widen_marks(f, src, changed, active);
+    widen_marks(f, src, active, sources);
+    v->active = active;
+    v->sources = sources;
+done:
+    return status;
+}
+
+// Run an operation; with a memory, only where its source has changed.
+static jali_status run_varying(jali_context *ctx, const jali_bitmap *src, uint64_t flip, bool outside,
+                               known *k, int32_t parts, void (*work)(void *, int32_t), varying *v)
+{
+    jali_status status;
+    jali_bitmap now = {0};
+    uint64_t beyond = outside ? ~UINT64_C(0) : 0;
+    TRY(pad_source(ctx, src, flip, beyond, v));
+    if (k) {
+        TRY(jali_bitmap_copy(ctx, src, &now)); // dst may be src
+        if (is_known(k, src, outside)) {
+            TRY(find_active(ctx, v->f, src, k, v));
+            memcpy(v->dst->word, k->dst.word, (size_t)(src->stride * src->height_px) * sizeof *src->word);
+        }
+    }
+    parallel(ctx, parts, work, v);
+    if (k) {
+        forget(ctx, k);
+        k->outside = outside;
+        k->src = now;
+        now = (jali_bitmap){0};
+        TRY(jali_bitmap_copy(ctx, v->dst, &k->dst));
+    }
+done:
+    jali_bitmap_free(ctx, &now);
+    return status;
 }
 
 // Erode src, or its complement when `flip` is set, into dst.
@@ -304,9 +439,9 @@ static jali_status erode_varying(jali_context *ctx, const jali_bitmap *src, cons
     arena_mark mark = arena_here(ctx);
     varying v = {.f = f, .dst = dst};
     if (!src->word) return JALI_OK;
-    uint64_t all = ~UINT64_C(0);
-    jali_status status = pad_source(ctx, src, flip ? all : 0, outside ? all : 0, &v);
-    if (status == JALI_OK) parallel(ctx, f->tiles->rows, erode_tiles, &v);
+    jali_status status =
+        run_varying(ctx, src, flip ? ~UINT64_C(0) : 0, outside, f->memory ? &f->memory->erosion[flip] : NULL,
+                    f->tiles->rows, erode_tiles, &v);
     arena_rewind(ctx, mark);
     return status;
 }
@@ -316,11 +451,10 @@ static jali_status dilate_varying(jali_context *ctx, const jali_bitmap *src, con
                                   bool outside, jali_bitmap *dst)
 {
     arena_mark mark = arena_here(ctx);
-    uint64_t all = ~UINT64_C(0);
-    varying v = {.f = f, .dst = dst, .flip = flip ? all : 0};
+    varying v = {.f = f, .dst = dst, .flip = flip ? ~UINT64_C(0) : 0};
     if (!src->word) return JALI_OK;
-    jali_status status = pad_source(ctx, src, 0, outside ? all : 0, &v);
-    if (status == JALI_OK) parallel(ctx, (dst->height_px + STRIP_ROWS - 1) / STRIP_ROWS, dilate_strip, &v);
+    jali_status status = run_varying(ctx, src, 0, outside, f->memory ? &f->memory->dilation[flip] : NULL,
+                                     (dst->height_px + STRIP_ROWS - 1) / STRIP_ROWS, dilate_strip, &v);
     arena_rewind(ctx, mark);
     return status;
 }
