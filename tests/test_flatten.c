@@ -295,6 +295,37 @@ TEST(what_has_no_room_is_refused_with_what_has)
     jali_surface_free(ctx, &s);
 }
 
+// A texture of other scale, and mirrored: the picture keeps its size in mm at its centre. Cut in the middle,
+// it has room on one side alone, and the message says that the surface itself has more.
+TEST(a_texture_is_brought_to_scale)
+{
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+        jali_surface s = sheet(30, 0, 0, 1);
+        jali_chart chart = {0};
+        jali_patch patch = {0};
+        jali_bitmap drawing = {0};
+        jali_placed placed;
+        CHECK_OK(ALLOCATE(ctx, s.uv, s.mesh.triangle_count));
+        s.textured = true;
+        for (int32_t t = 0; t < s.mesh.triangle_count; t++)
+            for (int k = 0; k < 3; k++) {
+                const double *p = s.mesh.vertex[s.mesh.triangle[t][k]];
+                bool right = s.mesh.vertex[s.mesh.triangle[t][0]][0] >= 5;
+                s.uv[t][k][0] = (mirrored ? -3 : 3) * p[0] + (right ? 500 : 0);
+                s.uv[t][k][1] = 3 * p[2];
+            }
+        CHECK_OK(place_spots(ctx, &s, 12, (double[3]){-3, 0, 1}, &chart, &patch, &drawing, &placed, 1));
+        CHECK(fabs(placed.stretch[0] - 1) < 1e-5 && fabs(placed.stretch[1] - 1) < 1e-5);
+        jali_chart_free(ctx, &chart);
+        jali_patch_free(ctx, &patch);
+        jali_bitmap_free(ctx, &drawing);
+        CHECK_STATUS(place_spots(ctx, &s, 20, (double[3]){0, 0, 1}, &chart, &patch, &drawing, &placed, 1),
+                     JALI_NO_RESULT);
+        CHECK(strstr(jali_message(ctx), "texture=no") != NULL);
+        jali_surface_free(ctx, &s);
+    }
+}
+
 static jali_status flatten_some(jali_context *limited, void *data)
 {
     flat_window w = window_at(0, 0, 0, 5, 4);
@@ -343,6 +374,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(rough_surfaces_are_pierced_one_to_one, open_context, close_context),
         cmocka_unit_test_setup_teardown(what_has_no_room_is_refused_with_what_has, open_context,
                                         close_context),
+        cmocka_unit_test_setup_teardown(a_texture_is_brought_to_scale, open_context, close_context),
         cmocka_unit_test_setup_teardown(every_allocation_refused_once, open_context, close_context),
         cmocka_unit_test_setup_teardown(threads_do_not_change_a_byte, open_context, close_context),
     };

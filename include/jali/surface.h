@@ -17,6 +17,7 @@ typedef struct jali_surface {
                         // v up; NULL: it cannot be unrolled without a cut of its own. Triangles that are not
                         // part of what is unrolled (floors) have NaN
     double around_mm;   // u and u + around_mm are the same place; 0 = the unrolled surface does not close
+    bool textured;      // uv is the texture of a file: cut into pieces, its lengths true on the whole alone
     bool *faulty; // [mesh.triangle_count] no picture may lie there; NULL: there is no such triangle. Move
                   // a report's here
 } jali_surface;
@@ -29,6 +30,7 @@ typedef struct jali_surface_options {
     double unit_mm;      // of files: what a length of 1 in the file means; default 1. A 3MF has its own unit
     double height_mm;    // of files: scale to this height instead; 0 (default) = do not
     double turn_degrees; // of files: turn about the vertical, from the front to the right; default 0
+    bool untextured;     // of files: leave the texture of an OBJ, so that --place wrap lays the surface flat
     int32_t up; // of files: which axis points up: 1, 2, 3 for x, y, z, negative for downwards; default 3
     jali_model_options model; // of files: limits
 } jali_surface_options;
@@ -122,7 +124,7 @@ JALI_API jali_status jali_surface_read(jali_context *ctx, const char *path, cons
 
 /// A surface as the command line describes it: a shape that jali_surface_make knows, or else a file, FILE or
 /// FILE:key=value,...: up=x|y|z|-x|-y|-z, unit=mm|cm|m|in, scale=FACTOR (on the unit), height=MM,
-/// turn=DEGREES.
+/// turn=DEGREES, texture=yes|no.
 JALI_API jali_status jali_surface_open(jali_context *ctx, const char *description,
                                        const jali_surface_options *opt, jali_surface *surface,
                                        jali_surface_report *report);

@@ -317,7 +317,9 @@ static jali_status room_for(jali_context *ctx, const piercing *p, double backing
     int64_t vertices = (int64_t)old->vertex_count + p->s.point_count;
     if (MAX(triangles, vertices) > INT32_MAX / 8)
         return fail(ctx, JALI_LIMIT, "the pierced surface would have %lld triangles", (long long)triangles);
-    *out = (jali_shell){.unit_mm = p->shell->unit_mm, .outer.around_mm = p->shell->outer.around_mm};
+    *out = (jali_shell){.unit_mm = p->shell->unit_mm,
+                        .outer.around_mm = p->shell->outer.around_mm,
+                        .outer.textured = p->shell->outer.textured};
     TRY(ALLOCATE(ctx, out->outer.mesh.triangle, triangles + 1));
     TRY(ALLOCATE(ctx, out->outer.mesh.vertex, vertices + 1));
     TRY(ALLOCATE(ctx, out->inner, vertices + 1));

@@ -169,10 +169,11 @@ jali_status jali_surface_read(jali_context *ctx, const char *path, const jali_su
     found.vertices = surface->mesh.vertex_count;
     found.triangles = surface->mesh.triangle_count;
     if (found.triangles == 0) TRY(fail(ctx, JALI_BAD_INPUT, "%s: no triangle has an area", file.name));
-    if (surface->uv && !scale_texture(surface)) {
+    if (surface->uv && (opt.untextured || !scale_texture(surface))) {
         release(ctx, surface->uv);
         surface->uv = NULL;
     }
+    surface->textured = surface->uv != NULL;
 done:
     jali_bytes_free(ctx, &bytes);
     if (status != JALI_OK) jali_surface_free(ctx, surface);
@@ -191,7 +192,8 @@ static jali_status take_keys(jali_context *ctx, const char *keys, jali_surface_o
                                                                                            "in"};
     static const double unit_mm[] = {1, 10, 1000, 25.4};
     jali_status status;
-    int32_t axis = opt->up > 0 ? opt->up - 1 : 2 - opt->up, unit = -1;
+    static const char *const answers[] = {"yes", "no"};
+    int32_t without = opt->untextured, axis = opt->up > 0 ? opt->up - 1 : 2 - opt->up, unit = -1;
     double scale = 1;
     spec s;
     TRY(spec_split(ctx, "a model", keys, &s));
@@ -200,7 +202,9 @@ static jali_status take_keys(jali_context *ctx, const char *keys, jali_surface_o
     TRY(spec_number(ctx, &s, "scale", 1e-6, 1e6, &scale));
     TRY(spec_number(ctx, &s, "height", 0.1, largest_mm, &opt->height_mm));
     TRY(spec_number(ctx, &s, "turn", -360, 360, &opt->turn_degrees));
+    TRY(spec_choice(ctx, &s, "texture", answers, 2, &without));
     TRY(spec_finish(ctx, &s));
+    opt->untextured = without == 1;
     opt->up = axis < 3 ? axis + 1 : 2 - axis;
     opt->unit_mm = (unit < 0 ? opt->unit_mm : unit_mm[unit]) * scale;
 done:

@@ -1,4 +1,4 @@
-// Faces in the plane of the picture: through a camera, or unrolled.
+// Faces in the plane of the picture, through a camera.
 //
 // Source:  Binary Image Carving for 3D Printing, section 3: the picture is carved along the rays of an
 // inverse
@@ -92,20 +92,6 @@ jali_status lay_by_camera(jali_context *ctx, const jali_surface *surface, const 
         for (int k = 0; k < 3; k++) memcpy(l->at[t][k], at[mesh->triangle[t][k]], sizeof *at);
 done:
     arena_rewind(ctx, mark);
-    if (status != JALI_OK) laid_free(ctx, l);
-    return status;
-}
-
-jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double centre_uv[2],
-                             laid *l)
-{
-    jali_status status;
-    TRY(laid_create(ctx, surface, l));
-    l->around_mm = surface->around_mm;
-    for (int32_t t = 0; t < surface->mesh.triangle_count; t++)
-        for (int k = 0; k < 3; k++)
-            for (int i = 0; i < 2; i++) l->at[t][k][i] = surface->uv[t][k][i] - centre_uv[i];
-done:
     if (status != JALI_OK) laid_free(ctx, l);
     return status;
 }

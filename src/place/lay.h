@@ -26,10 +26,14 @@ typedef struct camera {
 ///   fails  JALI_BAD_VALUE (up along the view, no direction)
 jali_status aim(jali_context *ctx, const jali_camera *opt, const double centre[3], camera *c);
 
-/// These fill a new `laid`; free with laid_free.
+/// Lay all faces; free with laid_free.
 jali_status lay_by_camera(jali_context *ctx, const jali_surface *surface, const camera *c, laid *l);
-jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double centre_uv[2],
-                             laid *l);
+
+/// Lay the faces that have a place on the unrolled surface there.
+///   in     at_mm      the origin is the place of the nearest triangle's middle; NULL: the middle of all
+///          reach_mm   a texture is scaled so that lengths are true on the mean so far around the origin
+jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double *at_mm,
+                             double reach_mm, laid *l);
 
 /// A picture to be laid on a surface that does not come unrolled.
 typedef struct flat_window {

@@ -138,46 +138,29 @@ done:
     return status;
 }
 
-// The middle of the unrolled surface, or its place nearest to a point: of the nearest triangle's middle.
-static void unrolled_centre(const placing_work *w, double uv[2])
+// The place that a wrapped picture's centre goes to when the shape does not say: the given one, or where a
+// projected picture would have most room.
+static jali_status choose_place(jali_context *ctx, placing_work *w, double at[3])
 {
-    const jali_surface *s = w->surface;
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, nearest = INFINITY;
-    for (int32_t t = 0; t < s->mesh.triangle_count; t++) {
-        double away = 0, middle_uv[2] = {0, 0};
-        if (isnan(s->uv[t][0][0])) continue;
-        for (int k = 0; k < 3; k++) {
-            double middle = 0;
-            for (int i = 0; i < 3; i++) middle += s->mesh.vertex[s->mesh.triangle[t][i]][k] / 3;
-            away += (middle - w->opt.at_mm[k]) * (middle - w->opt.at_mm[k]);
-            for (int i = 0; i < 2; i++) {
-                low[i] = MIN(low[i], s->uv[t][k][i]);
-                high[i] = MAX(high[i], s->uv[t][k][i]);
-                middle_uv[i] += s->uv[t][k][i] / 3;
-            }
-        }
-        if (!w->opt.at_given || away >= nearest) continue;
-        nearest = away;
-        memcpy(uv, middle_uv, sizeof middle_uv);
-    }
-    for (int i = 0; i < 2 && !w->opt.at_given; i++) uv[i] = (low[i] + high[i]) / 2;
+    jali_status status = JALI_OK;
+    double room, half[2] = {w->size_mm[0] / 2, w->size_mm[1] / 2};
+    double wanted = 1 + MAX(w->ring_mm[0], w->ring_mm[1]) / MIN(half[0], half[1]);
+    memcpy(at, w->opt.at_mm, sizeof w->opt.at_mm);
+    if (w->opt.at_given) return JALI_OK;
+    TRY(find_view(ctx, w->surface, &w->opt, half, wanted, &w->view, &room));
+    memcpy(at, w->view.centre, sizeof w->view.centre);
+done:
+    return status;
 }
 
-// A surface that does not come unrolled is flattened around the picture's centre: the given one, or where a
-// projected picture would have most room.
+// A surface that does not come unrolled is flattened around the picture's centre.
 static jali_status flatten_picture(jali_context *ctx, placing_work *w)
 {
     jali_status status;
     flat_window window = {.size_mm = {w->size_mm[0], w->size_mm[1]},
                           .ring_mm = {w->ring_mm[0], w->ring_mm[1]}};
-    double room, half[2] = {w->size_mm[0] / 2, w->size_mm[1] / 2};
-    double wanted = 1 + MAX(w->ring_mm[0], w->ring_mm[1]) / MIN(half[0], half[1]);
-    memcpy(window.at_mm, w->opt.at_mm, sizeof window.at_mm);
     memcpy(window.up, w->opt.camera.up, sizeof window.up);
-    if (!w->opt.at_given) {
-        TRY(find_view(ctx, w->surface, &w->opt, half, wanted, &w->view, &room));
-        memcpy(window.at_mm, w->view.centre, sizeof window.at_mm);
-    }
+    TRY(choose_place(ctx, w, window.at_mm));
     TRY(lay_by_flattening(ctx, w->surface, &window, &w->plane));
 done:
     return status;
@@ -186,7 +169,7 @@ done:
 static jali_status wrap_picture(jali_context *ctx, placing_work *w)
 {
     jali_status status;
-    double uv[2] = {0, 0}, around = w->surface->around_mm;
+    double at[3], around = w->surface->around_mm;
     if (!w->surface->uv) return flatten_picture(ctx, w);
     if (around > 0 && w->size_mm[0] + 2 * w->ring_mm[0] > around) { // the zones on both sides become one
         w->ring_mm[0] = (around - w->size_mm[0]) / 2;
@@ -197,8 +180,9 @@ static jali_status wrap_picture(jali_context *ctx, placing_work *w)
                 "stay, so that at most %.2f mm fit",
                 w->size_mm[0], around, w->opt.phi_s_mm, around - w->opt.phi_s_mm);
     }
-    unrolled_centre(w, uv);
-    TRY(lay_by_unrolling(ctx, w->surface, uv, &w->plane));
+    if (w->surface->textured || w->opt.at_given) TRY(choose_place(ctx, w, at));
+    TRY(lay_by_unrolling(ctx, w->surface, w->surface->textured || w->opt.at_given ? at : NULL,
+                         MIN(w->size_mm[0], w->size_mm[1]) / 4, &w->plane));
 done:
     return status;
 }
@@ -321,8 +305,11 @@ static jali_status check_room(jali_context *ctx, const placing_work *w)
     if (status != JALI_OK) return status;
     return fail(ctx, JALI_NO_RESULT,
                 "the surface %s %.3g %% of the picture's window of %.4g x %.4g mm, most at its %s; %s",
-                w->plane.depth ? "ends or turns away within" : "ends within", 100 * MAX(1 - covered, 1e-9),
-                w->size_mm[0] + 2 * w->ring_mm[0], w->size_mm[1] + 2 * w->ring_mm[1], worst_part(w), offer);
+                w->plane.depth         ? "ends or turns away within"
+                : w->surface->textured ? "as its texture lies (texture=no: laid flat anew) is cut within"
+                                       : "ends within",
+                100 * MAX(1 - covered, 1e-9), w->size_mm[0] + 2 * w->ring_mm[0],
+                w->size_mm[1] + 2 * w->ring_mm[1], worst_part(w), offer);
 }
 
 // Faults of the mesh do not matter elsewhere, but a picture cannot be pierced through them.
