@@ -106,6 +106,9 @@ static void tell_picture(const settings *set, const jali_picture *picture, const
     if (set->surface)
         say(set, "a mm of the picture is %.3g to %.3g mm on the surface", r->placed.stretch[0],
             r->placed.stretch[1]);
+    if (set->surface && r->wall_mm < set->make.optimise.phi_s_mm)
+        say(set, "the wall under the picture is %.3g mm thin, less than phi_s, %g mm", r->wall_mm,
+            set->make.optimise.phi_s_mm);
     say(set, "%d x %d px in %d white piece%s; %d bridge%s laid", picture->width_px, picture->height_px,
         r->input_pieces, r->input_pieces == 1 ? "" : "s", r->optimised.bridges,
         r->optimised.bridges == 1 ? "" : "s");
@@ -131,6 +134,10 @@ static void tell(jali_context *ctx, const made *m)
             "the wall is thinner than %g mm at %d places of the surface, %.3g mm at (%.4g, %.4g, %.4g) mm",
             set->wall.thickness_mm, wall->thinned, wall->thinnest_mm, wall->thinnest_at_mm[0],
             wall->thinnest_at_mm[1], wall->thinnest_at_mm[2]);
+    if (set->surface && wall->thinned > wall->vertices / 4)
+        say(set, "much of it has no room for that wall: a model that is a thin wall already is better given "
+                 "by its "
+                 "outer skin alone");
     if (set->make.solid)
         say(set, "%d triangles, %.4g cm3, %s", m->object.mesh.triangle_count,
             m->object.check.volume_mm3 / 1000, m->object.closed ? "closed and manifold" : "not a solid");

@@ -84,12 +84,13 @@ static json_t *vector_of(const double v[3])
 }
 
 // Where a picture lies on the surface.
-static json_t *place_of(const jali_placed *p)
+static json_t *place_of(const jali_result *r)
 {
+    const jali_placed *p = &r->placed;
     bool wrapped = p->placing == JALI_PLACE_WRAP;
-    return json_pack("{s:s, s:o, s:o, s:[f, f]}", "placing", wrapped ? "wrap" : "project", "centre_mm",
+    return json_pack("{s:s, s:o, s:o, s:[f, f], s:f}", "placing", wrapped ? "wrap" : "project", "centre_mm",
                      vector_of(p->centre_mm), "direction", wrapped ? json_null() : vector_of(p->direction),
-                     "stretch", p->stretch[0], p->stretch[1]);
+                     "stretch", p->stretch[0], p->stretch[1], "wall_mm", r->wall_mm);
 }
 
 static json_t *surface_of(const made *m)
@@ -116,12 +117,11 @@ static json_t *picture_of(const settings *set, const jali_picture *picture, cons
         " s:{s:i, s:I, s:i}, s:o, s:o}",
         "input", "width_px", picture->width_px, "height_px", picture->height_px, "white_components",
         r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm, rows * pixel_mm, "grid_px",
-        columns, rows, "pixel_mm", pixel_mm, "place", set->surface ? place_of(&r->placed) : json_null(),
-        "printer", "phi_e_mm", printer->phi_e_mm, "phi_s_mm", printer->phi_s_mm, "phi_v_mm",
-        printer->phi_v_mm, "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2],
-        "connect", "bridges", r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels,
-        "pieces_dropped", r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict",
-        predict_of(set, r));
+        columns, rows, "pixel_mm", pixel_mm, "place", set->surface ? place_of(r) : json_null(), "printer",
+        "phi_e_mm", printer->phi_e_mm, "phi_s_mm", printer->phi_s_mm, "phi_v_mm", printer->phi_v_mm,
+        "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2], "connect", "bridges",
+        r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels, "pieces_dropped",
+        r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict", predict_of(set, r));
 }
 
 // The first picture's figures stand at the top; a job lists all of them as "pictures" too.

@@ -9,6 +9,7 @@
 #include "raster/raster.h"
 #include "base/base.h"
 
+#include <math.h>
 #include <time.h>
 
 const char *jali_stage_name(int32_t stage)
@@ -226,6 +227,20 @@ void jali_object_free(jali_context *ctx, jali_object *object)
     *object = (jali_object){0};
 }
 
+// The least distance between the skins over the faces under a picture.
+static double thinnest_wall(const jali_shell *shell, const jali_patch *patch)
+{
+    double least2 = INFINITY;
+    for (int32_t i = 0; i < patch->point_count; i++) {
+        const double *outer = shell->outer.mesh.vertex[patch->vertex[i]],
+                     *inner = shell->inner[patch->vertex[i]];
+        double sum = 0;
+        for (int k = 0; k < 3; k++) sum += (outer[k] - inner[k]) * (outer[k] - inner[k]);
+        least2 = MIN(least2, sum);
+    }
+    return sqrt(least2);
+}
+
 static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const jali_options *given,
                               double thickness_mm, jali_shell *shell, jali_result *r)
 {
@@ -239,6 +254,8 @@ static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const ja
                               : jali_place_defaults().width_mm;
     TRY(image_stages(ctx, picture, &opt, shell, &patch, &r->contours, r));
     double begun = now_seconds();
+    r->wall_mm = thinnest_wall(shell, &patch);
+    r->printable = r->printable && r->wall_mm >= MIN(opt.optimise.phi_s_mm, thickness_mm);
     if (opt.solid) TRY(jali_pierce(ctx, &r->contours, &patch, MIN(opt.backing_mm / thickness_mm, 1), shell));
     lap(r->seconds, JALI_STAGE_CARVE, &begun);
 done:

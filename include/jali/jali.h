@@ -77,6 +77,8 @@ typedef struct jali_result {
     int32_t input_pieces; // white components, 4-connected
     jali_chart chart;
     jali_placed placed;       // on a surface: where
+    double wall_mm;           // on a surface: the thinnest wall under the picture, between the skins at its
+                              // vertices; less than phi_s is not printable
     jali_optimised optimised; // the mask and how it came about
     // What comes out of the printer, when predicted: of the input as it is, connected only, and of the
     // result.

@@ -35,7 +35,8 @@ JALI_API jali_shell_options jali_shell_defaults(void);
 typedef struct jali_shell_report {
     double thinnest_mm; // as thickness_mm where nothing is in the way
     double thinnest_at_mm[3];
-    int32_t thinned; // vertices with less than the thickness
+    int32_t vertices; // of the surface
+    int32_t thinned;  // vertices with less than the thickness
 } jali_shell_report;
 
 /// Hollow out a surface: give it an inner skin at the wall's thickness along the normals. Where that would

@@ -78,6 +78,7 @@ jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const ja
     const offset_options wall = {opt.thickness_mm, MIN(opt.least_mm, opt.thickness_mm), shell->unit_mm};
     TRY(offset_inward(ctx, mesh, &wall, shell->inner, NULL, &found));
     if (found.unsolved_triangles > 0) TRY(refuse_wall(ctx, mesh, &opt, &found));
+    if (report) report->vertices = mesh->vertex_count;
     if (report && found.thinnest >= 0) {
         report->thinned = found.thinned;
         report->thinnest_mm = MIN(found.thinnest_mm, opt.thickness_mm);
