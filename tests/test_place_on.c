@@ -252,6 +252,24 @@ TEST(a_view_is_found_and_hidden_parts_are_refused)
     jali_surface_free(ctx, &s);
 }
 
+TEST(faulty_faces_matter_under_the_picture_alone)
+{
+    lying l;
+    jali_surface s = surface_of("cylinder:r=30,h=60");
+    jali_place_options opt = jali_place_defaults();
+    opt.width_mm = 20;
+    CHECK_OK(ALLOCATE_CLEARED(ctx, s.faulty, s.mesh.triangle_count));
+    for (int32_t t = 0; t < s.mesh.triangle_count; t++) // the whole back
+        s.faulty[t] = s.mesh.vertex[s.mesh.triangle[t][0]][1] > 0;
+    CHECK_OK(put(&s, &opt, 64, 64, &l));
+    take_away(&l);
+    opt.at_given = true;
+    opt.at_mm[1] = 30, opt.at_mm[2] = 30;
+    CHECK_STATUS(put(&s, &opt, 64, 64, &l), JALI_BAD_INPUT);
+    CHECK(strstr(jali_message(ctx), "under the picture are faulty") != NULL);
+    jali_surface_free(ctx, &s);
+}
+
 static jali_status place_some(jali_context *limited, void *data)
 {
     lying l;
@@ -287,6 +305,8 @@ int main(void)
                                         close_context),
         cmocka_unit_test_setup_teardown(a_picture_around_leaves_a_bar, open_context, close_context),
         cmocka_unit_test_setup_teardown(a_view_is_found_and_hidden_parts_are_refused, open_context,
+                                        close_context),
+        cmocka_unit_test_setup_teardown(faulty_faces_matter_under_the_picture_alone, open_context,
                                         close_context),
         cmocka_unit_test_setup_teardown(every_allocation_refused_once, open_context, close_context),
     };
