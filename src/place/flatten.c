@@ -350,7 +350,7 @@ done:
 static jali_status refuse(jali_context *ctx, flat_work *w)
 {
     jali_status status;
-    char fault[200], offer[80] = "another place (--at) is needed";
+    char fault[200], offer[128] = "another place (--at) is needed";
     double scale;
     const double *at = w->surface->mesh.vertex[w->surface->mesh.triangle[w->worst][0]];
     if (w->folded)
@@ -367,8 +367,9 @@ static jali_status refuse(jali_context *ctx, flat_work *w)
                  2 * w->half_mm[0], 2 * w->half_mm[1]);
     TRY(largest_fit(ctx, w, &scale));
     if (scale > 0)
-        snprintf(offer, sizeof offer, "a width of %.4g mm fits there",
-                 floor(scale * w->window->size_mm[0] * 100) / 100);
+        snprintf(offer, sizeof offer, "a width of %.4g mm fits at (%.4g, %.4g, %.4g) mm",
+                 floor(scale * w->window->size_mm[0] * 100) / 100, w->seed.at[0], w->seed.at[1],
+                 w->seed.at[2]);
     status = fail(ctx, JALI_NO_RESULT, "%s; %s", fault, offer);
 done:
     return status;

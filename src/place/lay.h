@@ -30,10 +30,9 @@ jali_status aim(jali_context *ctx, const jali_camera *opt, const double centre[3
 jali_status lay_by_camera(jali_context *ctx, const jali_surface *surface, const camera *c, laid *l);
 
 /// Lay the faces that have a place on the unrolled surface there.
-///   in     at_mm      the origin is the place of the nearest triangle's middle; NULL: the middle of all
-///          reach_mm   a texture is scaled so that lengths are true on the mean so far around the origin
-jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double *at_mm,
-                             double reach_mm, laid *l);
+///   in     at_mm   the origin is the place of the nearest triangle's middle; NULL: the middle of all
+///                  A texture is scaled so that lengths are true there
+jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double *at_mm, laid *l);
 
 /// A picture to be laid on a surface that does not come unrolled.
 typedef struct flat_window {

@@ -181,8 +181,7 @@ static jali_status wrap_picture(jali_context *ctx, placing_work *w)
                 w->size_mm[0], around, w->opt.phi_s_mm, around - w->opt.phi_s_mm);
     }
     if (w->surface->textured || w->opt.at_given) TRY(choose_place(ctx, w, at));
-    TRY(lay_by_unrolling(ctx, w->surface, w->surface->textured || w->opt.at_given ? at : NULL,
-                         MIN(w->size_mm[0], w->size_mm[1]) / 4, &w->plane));
+    TRY(lay_by_unrolling(ctx, w->surface, w->surface->textured || w->opt.at_given ? at : NULL, &w->plane));
 done:
     return status;
 }
@@ -300,16 +299,18 @@ static jali_status check_room(jali_context *ctx, const placing_work *w)
 {
     double covered = cover(w, 1);
     char offer[OFFER_BYTES];
+    bool textured = !w->plane.depth && w->surface->textured;
     if (covered >= COVERED) return JALI_OK;
     jali_status status = offer_instead(ctx, w, largest_scale(w), offer);
     if (status != JALI_OK) return status;
     return fail(ctx, JALI_NO_RESULT,
-                "the surface %s %.3g %% of the picture's window of %.4g x %.4g mm, most at its %s; %s",
-                w->plane.depth         ? "ends or turns away within"
-                : w->surface->textured ? "as its texture lies (texture=no: laid flat anew) is cut within"
-                                       : "ends within",
+                "the surface %s %.3g %% of the picture's window of %.4g x %.4g mm, most at its %s; %s%s",
+                w->plane.depth ? "ends or turns away within"
+                : textured     ? "has the border of its texture within"
+                               : "ends within",
                 100 * MAX(1 - covered, 1e-9), w->size_mm[0] + 2 * w->ring_mm[0],
-                w->size_mm[1] + 2 * w->ring_mm[1], worst_part(w), offer);
+                w->size_mm[1] + 2 * w->ring_mm[1], worst_part(w), offer,
+                textured ? "; with :texture=no behind the file's name it is laid flat instead" : "");
 }
 
 // Faults of the mesh do not matter elsewhere, but a picture cannot be pierced through them.

@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+static const double REACH = 4; // radii of the triangle in the middle over which a texture's scale is taken
+
 // The middle of the unrolled surface.
 static void middle_unrolled(const jali_surface *s, double uv[2])
 {
@@ -43,10 +45,11 @@ static int32_t nearest_unrolled(const jali_surface *s, const double at[3], doubl
 
 // A texture has its own scale from place to place, and pieces that lie mirrored: make lengths true on the
 // mean over a middling part of the picture, and the picture the right way round.
-static void scale_texture(const jali_surface *s, int32_t face, const double uv[2], double reach,
-                          double scale[2])
+static void scale_texture(const jali_surface *s, int32_t face, const double uv[2], double scale[2])
 {
-    double space = 0, flat = 0, own = 0;
+    double space = 0, flat = 0, own = 0, reach = 0;
+    for (int k = 0; k < 3; k++)
+        reach = MAX(reach, REACH * hypot(s->uv[face][k][0] - uv[0], s->uv[face][k][1] - uv[1]));
     for (int32_t t = 0; t < s->mesh.triangle_count; t++) {
         const double(*p)[2] = (const double(*)[2])s->uv[t];
         double a[3], b[3], x = (p[0][0] + p[1][0] + p[2][0]) / 3 - uv[0],
@@ -67,8 +70,7 @@ static void scale_texture(const jali_surface *s, int32_t face, const double uv[2
     scale[0] = own < 0 ? -scale[1] : scale[1];
 }
 
-jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double *at_mm,
-                             double reach_mm, laid *l)
+jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double *at_mm, laid *l)
 {
     jali_status status;
     double uv[2] = {0, 0}, scale[2] = {1, 1};
@@ -76,7 +78,7 @@ jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, con
     l->around_mm = surface->around_mm;
     if (at_mm) {
         int32_t face = nearest_unrolled(surface, at_mm, uv);
-        if (surface->textured) scale_texture(surface, face, uv, reach_mm, scale);
+        if (surface->textured) scale_texture(surface, face, uv, scale);
     } else
         middle_unrolled(surface, uv);
     for (int32_t t = 0; t < surface->mesh.triangle_count; t++)
