@@ -114,6 +114,7 @@ if [ -d "$data/meshes" ]; then
         *bunny* | *spot* | *teapot*) options=up=y,$options ;;
         *vase.obj) options=up=-y,$options ;;
         *plane.off) options=up=y,$options ;;
+        *cylinder.stl) width=20 ;;
         *frog*) options=scale=2 view="--dir 0,0,-1" ;;
         *holes*) options=unit=m view="--dir 0,0,-1" ;;
         esac
