@@ -3,6 +3,8 @@
 #include "plain.h"
 
 #include <jali/predict.h>
+#include "raster/raster.h"
+#include "base/base.h"
 
 #include <math.h>
 
@@ -240,6 +242,45 @@ done:
     return status;
 }
 
+// Without growth a piece is no smaller than a disc of phi_s; the closing's specks are.
+TEST(specks_between_the_discs_of_a_void_are_no_pieces)
+{
+    enum { SEEDS = 60, BLOCKS = 40, SIDE = 30, DISC_AREA = 200 }; // of 16 fine px, rounded down
+    uint64_t seed = 3;
+    int32_t specks = 0;
+    jali_bitmap mask;
+    jali_reference reference;
+    jali_predict_options opt = options(SIDE);
+    opt.phi_e_mm = 0;
+    opt.recall = false;
+    CHECK_OK(jali_bitmap_create(ctx, SIDE, SIDE, &mask));
+    CHECK_OK(jali_reference_create(ctx, &mask, &opt, &reference));
+    for (int32_t i = 0; i < SEEDS; i++) {
+        for (int32_t block = 0; block < BLOCKS; block++) {
+            int32_t x0 = (int32_t)(next_random(&seed) >> 40) % SIDE,
+                    y0 = (int32_t)(next_random(&seed) >> 40) % SIDE;
+            for (int32_t y = y0; y < MIN(y0 + 6, SIDE); y++)
+                for (int32_t x = x0; x < MIN(x0 + 6, SIDE); x++) jali_bitmap_set(&mask, x, y, block % 2);
+        }
+        jali_prediction p;
+        components c;
+        int64_t *area;
+        int32_t pieces = 0;
+        CHECK_OK(jali_predict(ctx, &reference, &mask, 0, false, &opt, &p));
+        CHECK_OK(label_components(ctx, &p.printed, true, 4, &c));
+        CHECK_OK(component_areas(ctx, &c, &area));
+        for (int32_t k = 0; k < c.count; k++) pieces += area[k] >= DISC_AREA;
+        CHECK_INT(p.pieces, pieces);
+        specks += c.count - pieces;
+        release(ctx, area);
+        components_free(ctx, &c);
+        jali_prediction_free(ctx, &p);
+    }
+    CHECK(specks > 0); // else this tested nothing
+    jali_reference_free(ctx, &reference);
+    jali_bitmap_free(ctx, &mask);
+}
+
 TEST(every_allocation_refused_once)
 {
     uint64_t seed = 3;
@@ -290,6 +331,7 @@ int main(void)
         cmocka_unit_test(pictures_of_few_pixels_are_split_until_a_bar_of_phi_s_prints_wherever_it_lies),
         cmocka_unit_test(the_error_rate_is_what_is_counted_by_hand),
         cmocka_unit_test(recall_is_the_share_of_the_axis_that_prints),
+        cmocka_unit_test(specks_between_the_discs_of_a_void_are_no_pieces),
         cmocka_unit_test(every_allocation_refused_once),
         cmocka_unit_test(threads_do_not_change_a_prediction),
         cmocka_unit_test(bad_values_are_a_sentence),

@@ -32,7 +32,7 @@ typedef struct jali_prediction {
     jali_bitmap printed;               // fine grid, the picture's area alone
     double error_rate;                 // share of fine pixels that differ from the picture, 0 .. 1
     double recall_white, recall_black; // share of the picture's medial axis that prints in its tone, 0 .. 1
-    int32_t pieces;                    // solid pieces, 4-connected, surroundings included
+    int32_t pieces; // 4-connected, surroundings included; specks of the closing are none (docs/predict.md)
 } jali_prediction;
 
 /// Put the picture on the fine grid: 4 times finer than its pixels, or 2 or 1 where those are so small that

@@ -81,9 +81,10 @@ static double recall_of(jali_context *ctx, const jali_bitmap *axis, int64_t axis
     return (double)hit / (double)axis_count;
 }
 
-// Print `mask` in place. `pixel_mm` is the grid's.
+// Print `mask` in place; `laid` is what the printer lays by itself, before voids fill up and edges grow.
+// `pixel_mm` is the grid's.
 static jali_status print_mask(jali_context *ctx, jali_bitmap *mask, bool outside, double pixel_mm,
-                              const tiling *tiles, const jali_predict_options *opt)
+                              const tiling *tiles, const jali_predict_options *opt, jali_bitmap *laid)
 {
     jali_status status;
     jali_bitmap scratch = {0};
@@ -97,6 +98,7 @@ static jali_status print_mask(jali_context *ctx, jali_bitmap *mask, bool outside
     TRY(field_of_discs(ctx, tiles, void_px, 0, false, true, &hollow));
     TRY(field_of_discs(ctx, tiles, growth_px, 0.5, true, false, &growth));
     TRY(field_open(ctx, mask, &solid, outside, &scratch, mask));
+    TRY(jali_bitmap_copy(ctx, mask, laid));
     TRY(field_close(ctx, mask, &hollow, outside, &scratch, mask));
     TRY(field_dilate(ctx, mask, &growth, outside, &scratch));
     jali_bitmap swap = *mask;
@@ -136,12 +138,28 @@ static jali_status place_metric(jali_context *ctx, const jali_chart *chart, cons
                          picture->height_px + 2 * fine_margin, first, first, scale, tiles);
 }
 
-static jali_status count_pieces(jali_context *ctx, const jali_bitmap *a, int32_t *pieces)
+// Components of the print that hold something laid. The others are specks of a fine pixel or two that the
+// closing leaves between the void's discs: nothing that a printer would make.
+static jali_status count_pieces(jali_context *ctx, const jali_bitmap *printed, const jali_bitmap *laid,
+                                int32_t *pieces)
 {
-    components c;
-    jali_status status = label_components(ctx, a, true, 4, &c);
-    *pieces = c.count;
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    components c = {0};
+    bool *counted;
+    *pieces = 0;
+    TRY(label_components(ctx, printed, true, 4, &c));
+    TRY(ARENA(ctx, counted, c.count));
+    memset(counted, 0, (size_t)c.count * sizeof *counted);
+    for (int32_t y = 0; y < c.height_px; y++)
+        for (int32_t i = c.first[y]; i < c.first[y + 1]; i++)
+            if (!counted[c.label[i]] && count_run(laid, y, c.span[i][0], c.span[i][1])) {
+                counted[c.label[i]] = true;
+                ++*pieces;
+            }
+done:
     components_free(ctx, &c);
+    arena_rewind(ctx, mark);
     return status;
 }
 
@@ -150,7 +168,7 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
                          jali_prediction *prediction)
 {
     jali_status status;
-    jali_bitmap fine = {0}, coarse = {0};
+    jali_bitmap fine = {0}, laid = {0}, coarse = {0};
     tiling tiles = {0};
     const jali_bitmap *picture = &reference->picture;
     *prediction = (jali_prediction){0};
@@ -160,8 +178,9 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
     TRY(jali_bitmap_create(ctx, picture->width_px + 2 * margin, picture->height_px + 2 * margin, &fine));
     TRY(place_mask(ctx, mask, margin_px, outside_solid, margin, &fine));
     TRY(place_metric(ctx, opt->chart, picture, margin, &tiles));
-    TRY(print_mask(ctx, &fine, outside_solid, pixel_mm, &tiles, opt));
-    TRY(count_pieces(ctx, &fine, &prediction->pieces));
+    TRY(print_mask(ctx, &fine, outside_solid, pixel_mm, &tiles, opt, &laid));
+    TRY(count_pieces(ctx, &fine, &laid, &prediction->pieces));
+    jali_bitmap_free(ctx, &laid);
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &prediction->printed));
     resize_nearest(ctx, &fine, margin, margin, picture->width_px, picture->height_px, &prediction->printed);
     prediction->error_rate = (double)count_combined(ctx, RULE_XOR, picture, &prediction->printed) /
@@ -178,6 +197,7 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
 done:
     if (status != JALI_OK) jali_prediction_free(ctx, prediction);
     jali_bitmap_free(ctx, &fine);
+    jali_bitmap_free(ctx, &laid);
     jali_bitmap_free(ctx, &coarse);
     tiling_free(ctx, &tiles);
     return status;
