@@ -3,7 +3,8 @@
 // Why:     an edge of the surface that a contour crosses is bent by up to half a unit of the chart's lattice
 //          there, while the crossing is lifted onto the straight edge: what triangulates the bend has no
 //          area. Rounded to the lattice of the file it may even be turned over.
-// How:     a flip of the longest edge, where the quadrilateral around it stays upright on both skins and the
+// How:     an edge shorter than that loses one of its ends; else a flip of the longest edge, where the
+// quadrilateral around it stays upright on both skins and the
 //          lower of the two heights grows. Heights grow with each flip, so it ends; a cap makes sure.
 // Checked: tests/test_shell.c.
 #include "carve/slivers.h"
@@ -14,7 +15,7 @@
 #include <math.h>
 
 static const double LEAST_UNITS = 4; // of height: rounding moves each vertex by up to 0.9
-enum { FLIPS_A_SLIVER = 8 };
+enum { FLIPS_A_SLIVER = 8, MOST_RING = 64 };
 
 typedef struct mending {
     jali_shell *shell;
@@ -118,11 +119,107 @@ static void flip(mending *m, int32_t s)
     join(m, next_side(s), next_side(o));
 }
 
+// --- Short edges: the two ends become one
+
+// The sides that leave a vertex's triangles opposite it, and whether it lies on a border.
+typedef struct ring {
+    int32_t count, corner[MOST_RING]; // corner[i]: the side of a triangle that lies opposite the vertex
+    bool border, whole;               // whole: the ring has room for all of them
+} ring;
+
+static ring ring_of(const mending *m, int32_t s) // corner(m, s) is the vertex
+{
+    ring r = {.whole = true};
+    int32_t at = s;
+    do { // counter-clockwise
+        if (r.count == MOST_RING) r.whole = false;
+        if (!r.whole) return r;
+        r.corner[r.count++] = at;
+        int32_t across = m->linked.beside[next_side(at)];
+        if (across == NO_SIDE) r.border = true;
+        at = across == NO_SIDE ? -1 : next_side(across);
+    } while (at >= 0 && at != s);
+    for (at = s; r.border;) { // and the other way from the start
+        int32_t across = m->linked.beside[last_side(at)];
+        if (across == NO_SIDE) break;
+        at = last_side(across);
+        if (r.count == MOST_RING) r.whole = false;
+        if (!r.whole) return r;
+        r.corner[r.count++] = at;
+    }
+    return r;
+}
+
+static bool is_around(const mending *m, const ring *r, int32_t vertex)
+{
+    for (int32_t i = 0; i < r->count; i++)
+        if (corner(m, next_side(r->corner[i])) == vertex || corner(m, last_side(r->corner[i])) == vertex)
+            return true;
+    return false;
+}
+
+// Would the triangles around a vertex, but for the two beside the edge, stay upright with it moved to `to`?
+static bool stay_upright(const mending *m, const ring *r, int32_t to, int32_t t, int32_t u)
+{
+    for (int32_t i = 0; i < r->count; i++) {
+        int32_t here = r->corner[i], a = corner(m, next_side(here)), b = corner(m, last_side(here));
+        if (here >> 2 == t || here >> 2 == u || height_of(m, here >> 2) < m->least) continue;
+        double up[2][3];
+        for (int skin = 0; skin < 2; skin++) normal(m, skin, corner(m, here), a, b, up[skin]);
+        if (height(m, to, a, b, (const double(*)[3])up) <= 0) return false;
+    }
+    return true;
+}
+
+static void drop_beside(mending *m, int32_t s)
+{
+    int32_t x = m->linked.beside[next_side(s)], y = m->linked.beside[last_side(s)];
+    if (x != NO_SIDE) m->linked.beside[x] = y;
+    if (y != NO_SIDE) m->linked.beside[y] = x;
+    m->gone[s >> 2] = 1;
+}
+
+// Make the ends of side s one vertex, if nothing but its own triangles is lost by that (the link condition).
+static bool collapse(mending *m, int32_t s)
+{
+    int32_t o = m->linked.beside[s], t = s >> 2, u = o == NO_SIDE ? -1 : o >> 2;
+    if (u >= 0 && !same_interval(m, t, u)) return false;
+    // The end at corner(last_side(s)) goes; the other one stays.
+    ring stays = ring_of(m, next_side(s)), goes = ring_of(m, last_side(s));
+    if (!stays.whole || !goes.whole || (stays.border && goes.border && o != NO_SIDE)) return false;
+    if (goes.border && !stays.border) return false; // the other way round, when the neighbour is looked at
+    int32_t common = 0, vertex = corner(m, next_side(s));
+    for (int32_t i = 0; i < goes.count; i++) {
+        int32_t here = goes.corner[i], ends[2] = {next_side(here), last_side(here)};
+        bool last = m->linked.beside[ends[0]] == NO_SIDE; // of a border: its end counts as well
+        common += is_around(m, &stays, corner(m, ends[0]));
+        common += last && is_around(m, &stays, corner(m, ends[1]));
+    }
+    if (common != (o == NO_SIDE ? 1 : 2) || !stay_upright(m, &goes, vertex, t, u)) return false;
+    for (int32_t i = 0; i < goes.count; i++) m->linked.corner[goes.corner[i]] = vertex;
+    drop_beside(m, s);
+    if (o != NO_SIDE) drop_beside(m, o);
+    return true;
+}
+
+static bool collapse_short(mending *m, int32_t t)
+{
+    for (int32_t s = 4 * t; s < 4 * t + 3; s++) {
+        int32_t a = corner(m, next_side(s)), b = corner(m, last_side(s));
+        double shortest2 = MIN(length2(m, 0, a, b), length2(m, 1, a, b));
+        if (shortest2 >= 4 * m->least * m->least) continue;
+        if (collapse(m, s)) return true;
+        if (m->linked.beside[s] != NO_SIDE && collapse(m, m->linked.beside[s])) return true; // the other end
+    }
+    return false;
+}
+
 // Try to get rid of the sliver t; *other is the triangle that was changed with it.
 static bool mend(mending *m, int32_t t, int32_t *other)
 {
-    int32_t s = longest_side(m, t), o = m->linked.beside[s];
     *other = -1;
+    if (collapse_short(m, t)) return true;
+    int32_t s = longest_side(m, t), o = m->linked.beside[s];
     if (o == NO_SIDE || !same_interval(m, t, o >> 2)) {
         if (o != NO_SIDE) { // the border between two heights moves by the sliver's width
             memcpy(m->shell->solid[t], m->shell->solid[o >> 2], sizeof *m->shell->solid);
