@@ -14,10 +14,10 @@
 static const double TOLERANCE = 0.02;
 static const double PIXEL_MM = 0.025; // phi_s is 12 px, phi_v 20
 
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 enum { CAP_RADIUS_PX = 260, RANDOM_ROUNDS = 4, RANDOM_PX = 130 };
 #else
-enum { CAP_RADIUS_PX = 400, RANDOM_ROUNDS = 24, RANDOM_PX = 200 };
+enum { CAP_RADIUS_PX = 400, RANDOM_ROUNDS = 12, RANDOM_PX = 200 };
 #endif
 enum { MARGIN_PX = 46 };
 
