@@ -99,28 +99,40 @@ static void sum_bad(const laid *l, const view *v, double tilt, int32_t *sum)
     }
 }
 
-// The largest scale at which the picture has room, and the sample of its centre; of equal places the one
-// nearest to the middle of the view.
+// Has the picture room at a scale? The sample of its centre; of several the one nearest to the middle of the
+// view.
+static bool has_room(const view *v, const int32_t *sum, const double half_mm[2], double scale,
+                     int32_t centre[2])
+{
+    int32_t hx = (int32_t)ceil(scale * half_mm[0] / v->step),
+            hy = (int32_t)ceil(scale * half_mm[1] / v->step);
+    int32_t width = v->columns + 1;
+    double nearest = INFINITY;
+    for (int32_t y = hy; y < v->rows - hy; y++)
+        for (int32_t x = hx; x < v->columns - hx; x++) {
+            int32_t bad = sum[(y + hy + 1) * width + x + hx + 1] - sum[(y - hy) * width + x + hx + 1] -
+                          sum[(y + hy + 1) * width + x - hx] + sum[(y - hy) * width + x - hx];
+            double dx = x - v->columns / 2, dy = y - v->rows / 2, away = dx * dx + dy * dy;
+            if (bad > 0 || away >= nearest) continue;
+            nearest = away;
+            centre[0] = x, centre[1] = y;
+        }
+    return nearest < INFINITY;
+}
+
+// The largest scale at which the picture has room, in steps, and its centre: what has room has it at every
+// smaller scale too.
 static double largest_room(const view *v, const int32_t *sum, const double half_mm[2], int32_t centre[2])
 {
-    double best = 0;
-    int32_t width = v->columns + 1;
-    for (double scale = MAX(v->step / half_mm[0], v->step / half_mm[1]);; scale *= ROOM_STEP) {
-        int32_t hx = (int32_t)ceil(scale * half_mm[0] / v->step),
-                hy = (int32_t)ceil(scale * half_mm[1] / v->step);
-        double nearest = INFINITY;
-        for (int32_t y = hy; y < v->rows - hy; y++)
-            for (int32_t x = hx; x < v->columns - hx; x++) {
-                int32_t bad = sum[(y + hy + 1) * width + x + hx + 1] - sum[(y - hy) * width + x + hx + 1] -
-                              sum[(y + hy + 1) * width + x - hx] + sum[(y - hy) * width + x - hx];
-                double dx = x - v->columns / 2, dy = y - v->rows / 2, away = dx * dx + dy * dy;
-                if (bad > 0 || away >= nearest) continue;
-                nearest = away;
-                centre[0] = x, centre[1] = y;
-            }
-        if (nearest == INFINITY) return best;
-        best = scale;
+    double least = MAX(v->step / half_mm[0], v->step / half_mm[1]);
+    int32_t fits = -1, fails = 1 + (int32_t)(log(MAX(v->columns, v->rows)) / log(ROOM_STEP));
+    while (fails - fits > 1) {
+        int32_t middle = fits + (fails - fits) / 2, at[2];
+        bool room = has_room(v, sum, half_mm, least * pow(ROOM_STEP, middle), at);
+        if (room) memcpy(centre, at, sizeof at);
+        *(room ? &fits : &fails) = middle;
     }
+    return fits < 0 ? 0 : least * pow(ROOM_STEP, fits);
 }
 
 static jali_status room_in_view(jali_context *ctx, const jali_surface *surface, const double half_mm[2],
