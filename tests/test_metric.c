@@ -392,26 +392,24 @@ TEST(wide_patches_cross_words)
 }
 
 // A field that remembers against one that does not, over pictures that change here and there.
-TEST(a_memory_changes_no_result)
+static void check_memory(const jali_chart *chart, int32_t width, int32_t height, int32_t diameter_px)
 {
-    enum { WIDTH = 500, HEIGHT = 300 };
     uint64_t seed = 12;
-    jali_chart chart = curved_chart(WIDTH, HEIGHT, 16, wavy_metric);
     tiling t;
     field forgetful, remembering;
-    jali_bitmap a = random_bitmap(&seed, WIDTH, HEIGHT, 97), scratch, got, want;
-    CHECK_OK(tiling_create(ctx, &chart, WIDTH, HEIGHT, 0, 0, 1, &t));
-    CHECK_OK(field_of_discs(ctx, &t, 9, 0, false, false, &forgetful));
-    CHECK_OK(field_of_discs(ctx, &t, 9, 0, false, false, &remembering));
+    jali_bitmap a = random_bitmap(&seed, width, height, 97), scratch, got, want;
+    CHECK_OK(tiling_create(ctx, chart, width, height, 0, 0, 1, &t));
+    CHECK_OK(field_of_discs(ctx, &t, diameter_px, 0, false, false, &forgetful));
+    CHECK_OK(field_of_discs(ctx, &t, diameter_px, 0, false, false, &remembering));
     CHECK_OK(field_remember(ctx, &remembering));
-    CHECK_OK(jali_bitmap_create(ctx, WIDTH, HEIGHT, &scratch));
-    CHECK_OK(jali_bitmap_create(ctx, WIDTH, HEIGHT, &got));
-    CHECK_OK(jali_bitmap_create(ctx, WIDTH, HEIGHT, &want));
+    CHECK_OK(jali_bitmap_create(ctx, width, height, &scratch));
+    CHECK_OK(jali_bitmap_create(ctx, width, height, &got));
+    CHECK_OK(jali_bitmap_create(ctx, width, height, &want));
     for (int32_t round = 0; round < 60; round++) {
         bool outside = round / 20 != 1; // another surrounding forgets
         for (int32_t dot = 0; dot < round % 5; dot++) {
-            int32_t x = (int32_t)(next_random(&seed) >> 40) % WIDTH,
-                    y = (int32_t)(next_random(&seed) >> 40) % HEIGHT;
+            int32_t x = (int32_t)(next_random(&seed) >> 40) % width,
+                    y = (int32_t)(next_random(&seed) >> 40) % height;
             paint_patch(&a, x, y, patch_at(&forgetful, x, y), round % 2);
         }
         CHECK_OK(field_open(ctx, &a, &forgetful, outside, &scratch, &want));
@@ -433,7 +431,17 @@ TEST(a_memory_changes_no_result)
     field_free(ctx, &forgetful);
     field_free(ctx, &remembering);
     tiling_free(ctx, &t);
+}
+
+TEST(a_memory_changes_no_result)
+{
+    enum { WIDTH = 500, HEIGHT = 300 };
+    jali_chart chart = curved_chart(WIDTH, HEIGHT, 16, wavy_metric);
+    check_memory(&chart, WIDTH, HEIGHT, 9);
     free(chart.metric);
+    for (int32_t diameter_px = 1; diameter_px <= 30; diameter_px += 7) // flat: blocks of 512 columns
+        check_memory(NULL, 1700, 200, diameter_px);
+    check_memory(NULL, 1024, 300, 140); // reaches beyond a word
 }
 
 TEST(operators_give_the_same_for_any_number_of_threads)

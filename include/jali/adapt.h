@@ -36,12 +36,13 @@ typedef struct jali_adapt_options {
 
 JALI_API jali_adapt_options jali_adapt_defaults(void);
 
-/// The elements of a curved surface, to be shared by all calls with the same options.
+/// The elements of the widths, to be shared by all calls with the same options, one call at a time: they
+/// remember what the last ones found, and a picture that differs little is looked at where it does.
 typedef struct jali_elements jali_elements;
 
 /// Prepare the elements for pictures of a size.
-///   out    elements   NULL where the chart is flat: there is nothing to prepare
 ///   fails  JALI_NO_MEMORY, JALI_BAD_VALUE (widths; a metric that is none)
+///   cost   up to 10 bitmaps of that size as they are used
 JALI_API jali_status jali_elements_create(jali_context *ctx, const jali_adapt_options *opt, int32_t width_px,
                                           int32_t height_px, jali_elements **elements);
 JALI_API void jali_elements_free(jali_context *ctx, jali_elements *elements);

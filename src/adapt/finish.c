@@ -9,8 +9,6 @@
 #include "adapt/widths.h"
 #include "base/base.h"
 
-enum { NECK_SHARE = 6 };
-
 // Whether the patch, set on (0, 0), covers (dx, dy).
 static bool covers(const patch *p, int32_t dx, int32_t dy)
 {
@@ -71,22 +69,18 @@ done:
     return status;
 }
 
-// Cores up to `gap` px apart count as one: the neck between two discs of 12 px whose centres are 3 px apart
-// is still 11.6 px wide. (At 5 px, 10.9 wide, one of 24 real pictures came apart in the prediction.)
-static jali_status merge_near(jali_context *ctx, const tiling *tiles, int32_t gap, jali_bitmap *cores)
+// Cores that lie near each other count as one.
+static jali_status merge_near(jali_context *ctx, const field *near, jali_bitmap *cores)
 {
-    field disc = {0};
-    jali_bitmap merged = {0};
     jali_status status;
-    if (gap < 2) return JALI_OK;
-    TRY(field_of_discs(ctx, tiles, (gap | 1) - 1, 0.5, true, false, &disc));
+    jali_bitmap merged = {0};
+    if (!near->patches) return JALI_OK;
     TRY(jali_bitmap_create(ctx, cores->width_px, cores->height_px, &merged));
-    TRY(field_dilate(ctx, cores, &disc, false, &merged));
+    TRY(field_dilate(ctx, cores, near, false, &merged));
     jali_bitmap swap = *cores;
     *cores = merged;
     merged = swap;
 done:
-    field_free(ctx, &disc);
     jali_bitmap_free(ctx, &merged);
     return status;
 }
@@ -102,7 +96,7 @@ jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_options *opt, b
     if (thicken) TRY(thicken_details(ctx, opt, &w.solid, mask));
     TRY(field_erode(ctx, mask, &w.solid, opt->outside_solid, cores));
     if (!thicken) TRY(field_dilate(ctx, cores, &w.solid, false, mask));
-    TRY(merge_near(ctx, &w.tiles, opt->solid_px / NECK_SHARE, cores));
+    TRY(merge_near(ctx, &w.near, cores));
 done:
     if (status != JALI_OK) jali_bitmap_free(ctx, cores);
     widths_free(ctx, &w);

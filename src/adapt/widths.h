@@ -9,6 +9,8 @@
 typedef struct widths {
     tiling tiles;
     field solid, hollow; // they point to `tiles`: a struct of this type stays where it was made
+    field near;          // in the mask alone: what makes one of cores that lie so near that no neck is thin
+                         // between them; without patches where that is none but neighbours
     bool borrowed;       // from opt->elements
 } widths;
 

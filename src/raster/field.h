@@ -88,8 +88,8 @@ typedef struct field {
     struct field_memory *memory;       // of the last operations, or NULL
 } field;
 
-/// Let a field that varies keep source and result of its last erosion and dilation of either tone: the next
-/// one of a picture that differs little looks at the differences alone. Same results; 8 bitmaps of memory.
+/// Let a field keep source and result of its last erosion and dilation of either tone: the next one of a
+/// picture that differs little looks at the differences alone. Same results; up to 8 bitmaps of memory.
 jali_status field_remember(jali_context *ctx, field *f);
 void field_memory_free(jali_context *ctx, struct field_memory *m);
 

@@ -65,6 +65,21 @@ jali_status open_by(jali_context *ctx, const jali_bitmap *src, const element *e,
 jali_status close_by(jali_context *ctx, const jali_bitmap *src, const element *e, bool outside,
                      jali_bitmap *scratch, jali_bitmap *dst);
 
+/// The two halves of an opening, erode and dilate, and of a closing, widen and narrow. Even elements have
+/// their centre aside, so they differ.
+typedef enum morph_rule { MORPH_ERODE, MORPH_DILATE, MORPH_WIDEN, MORPH_NARROW, MORPH_RULES } morph_rule;
+
+/// Words first .. first + words - 1, both multiples of 8, of the rows y0 .. y1-1.
+typedef struct word_block {
+    int64_t first, words;
+    int32_t y0, y1;
+} word_block;
+
+/// Make of dst the blocks alone, which have no word in common; NULL: all of it. `outside` is what lies around
+/// src, solid around what a closing widened.
+jali_status morph_blocks(jali_context *ctx, morph_rule rule, const jali_bitmap *src, const element *e,
+                         bool outside, const word_block *block, int32_t count, jali_bitmap *dst);
+
 // --- Size (resize.c)
 
 /// Each pixel of dst takes the pixel of src's window that its centre falls on.

@@ -10,7 +10,7 @@
 // Cost:    a patch of n rows costs about 10 n operations a word of 64 px and span; words without a set pixel
 //          and words all around which everything is set cost nothing.
 // Checked: tests/test_metric.c against the definition; the laws of openings.
-#include "raster/field.h"
+#include "raster/remember.h"
 #include "base/base.h"
 
 enum { BLOCK_ROWS = 16, STRIP_ROWS = 64, MOST_TILE_ROWS = 64 };
@@ -24,9 +24,9 @@ typedef struct varying {
     uint64_t *word; // [height + above + below][pitch]: the source in a margin of what lies beyond
     uint16_t *deep; // of each such word: rows up to this one in which it and its two neighbours are all set
     int64_t pitch, lead;
-    int32_t above, below;  // rows of that margin
-    const uint8_t *active; // [blocks][stride]: words of the result that are wanted, BLOCK_ROWS rows at once;
-                           // the others are known. NULL: all are wanted
+    int32_t above, below;   // rows of that margin
+    const uint8_t *active;  // [blocks][stride]: words of the result that are wanted, BLOCK_ROWS rows at once;
+                            // the others are known. NULL: all are wanted
     const uint8_t *sources; // the same for what can paint into those
 } varying;
 
@@ -327,37 +327,7 @@ static void dilate_strip(void *shared, int32_t strip)
     }
 }
 
-// --- What the last operations found
-
-// Source and result of an operation; empty when nothing is known.
-typedef struct known {
-    jali_bitmap src, dst;
-    bool outside;
-} known;
-
-typedef struct field_memory {
-    known erosion[2], dilation[2]; // [flip]
-} field_memory;
-
-jali_status field_remember(jali_context *ctx, field *f)
-{
-    return f->which && !f->memory ? ALLOCATE_CLEARED(ctx, f->memory, 1) : JALI_OK;
-}
-
-static void forget(jali_context *ctx, known *k)
-{
-    jali_bitmap_free(ctx, &k->src);
-    jali_bitmap_free(ctx, &k->dst);
-}
-
-void field_memory_free(jali_context *ctx, field_memory *m)
-{
-    for (int32_t flip = 0; m && flip < 2; flip++) {
-        forget(ctx, &m->erosion[flip]);
-        forget(ctx, &m->dilation[flip]);
-    }
-    release(ctx, m);
-}
+// --- With a memory, only what changed
 
 // Mark all words within the patches' reach of a marked one.
 static void widen_marks(const field *f, const jali_bitmap *a, const uint8_t *from, uint8_t *to)
@@ -373,12 +343,6 @@ static void widen_marks(const field *f, const jali_bitmap *a, const uint8_t *fro
             for (int64_t k = MAX(b - high_by, 0); k <= MIN(b + high_by, blocks - 1); k++)
                 memset(to + k * a->stride + first, 1, (size_t)count);
         }
-}
-
-static bool is_known(const known *k, const jali_bitmap *src, bool outside)
-{
-    return k->dst.word && k->outside == outside && k->src.width_px == src->width_px &&
-           k->src.height_px == src->height_px;
 }
 
 // What of the result must be made anew, given the last one; then dst begins as that.
@@ -440,7 +404,7 @@ static jali_status erode_varying(jali_context *ctx, const jali_bitmap *src, cons
     varying v = {.f = f, .dst = dst};
     if (!src->word) return JALI_OK;
     jali_status status =
-        run_varying(ctx, src, flip ? ~UINT64_C(0) : 0, outside, f->memory ? &f->memory->erosion[flip] : NULL,
+        run_varying(ctx, src, flip ? ~UINT64_C(0) : 0, outside, recall(f, flip ? MORPH_WIDEN : MORPH_ERODE),
                     f->tiles->rows, erode_tiles, &v);
     arena_rewind(ctx, mark);
     return status;
@@ -453,7 +417,7 @@ static jali_status dilate_varying(jali_context *ctx, const jali_bitmap *src, con
     arena_mark mark = arena_here(ctx);
     varying v = {.f = f, .dst = dst, .flip = flip ? ~UINT64_C(0) : 0};
     if (!src->word) return JALI_OK;
-    jali_status status = run_varying(ctx, src, 0, outside, f->memory ? &f->memory->dilation[flip] : NULL,
+    jali_status status = run_varying(ctx, src, 0, outside, recall(f, flip ? MORPH_NARROW : MORPH_DILATE),
                                      (dst->height_px + STRIP_ROWS - 1) / STRIP_ROWS, dilate_strip, &v);
     arena_rewind(ctx, mark);
     return status;
@@ -462,29 +426,30 @@ static jali_status dilate_varying(jali_context *ctx, const jali_bitmap *src, con
 jali_status field_erode(jali_context *ctx, const jali_bitmap *src, const field *f, bool outside,
                         jali_bitmap *dst)
 {
-    if (!f->which) return erode(ctx, src, &f->whole, outside, dst);
+    if (!f->which) return morph_flat(ctx, MORPH_ERODE, src, f, outside, dst);
     return erode_varying(ctx, src, f, false, outside, dst);
 }
 
 jali_status field_dilate(jali_context *ctx, const jali_bitmap *src, const field *f, bool outside,
                          jali_bitmap *dst)
 {
-    if (!f->which) return dilate(ctx, src, &f->whole, outside, dst);
+    if (!f->which) return morph_flat(ctx, MORPH_DILATE, src, f, outside, dst);
     return dilate_varying(ctx, src, f, false, outside, dst);
 }
 
 jali_status field_open(jali_context *ctx, const jali_bitmap *src, const field *f, bool outside,
                        jali_bitmap *scratch, jali_bitmap *dst)
 {
-    if (!f->which) return open_by(ctx, src, &f->whole, outside, scratch, dst);
-    jali_status status = erode_varying(ctx, src, f, false, outside, scratch);
-    return status == JALI_OK ? dilate_varying(ctx, scratch, f, false, false, dst) : status;
+    jali_status status = field_erode(ctx, src, f, outside, scratch);
+    return status == JALI_OK ? field_dilate(ctx, scratch, f, false, dst) : status;
 }
 
 jali_status field_close(jali_context *ctx, const jali_bitmap *src, const field *f, bool outside,
                         jali_bitmap *scratch, jali_bitmap *dst)
 {
-    if (!f->which) return close_by(ctx, src, &f->whole, outside, scratch, dst);
-    jali_status status = erode_varying(ctx, src, f, true, outside, scratch);
-    return status == JALI_OK ? dilate_varying(ctx, scratch, f, true, false, dst) : status;
+    jali_status status = f->which ? erode_varying(ctx, src, f, true, outside, scratch)
+                                  : morph_flat(ctx, MORPH_WIDEN, src, f, outside, scratch);
+    if (status != JALI_OK) return status;
+    return f->which ? dilate_varying(ctx, scratch, f, true, false, dst)
+                    : morph_flat(ctx, MORPH_NARROW, scratch, f, true, dst);
 }
