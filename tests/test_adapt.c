@@ -334,17 +334,6 @@ TEST(details_conflicts_and_rounds_are_their_definitions)
 
 // --- The print
 
-static jali_bitmap random_blobs(uint64_t *seed, int32_t w, int32_t h, int32_t grain, int32_t percent)
-{
-    jali_bitmap small = random_bitmap(seed, w / grain + 1, h / grain + 1, percent), a;
-    CHECK_OK(jali_bitmap_create(ctx, w, h, &a));
-    for (int32_t y = 0; y < h; y++)
-        for (int32_t x = 0; x < w; x++)
-            jali_bitmap_set(&a, x, y, jali_bitmap_get(&small, x / grain, y / grain));
-    jali_bitmap_free(ctx, &small);
-    return a;
-}
-
 static jali_adapt_options small_widths(void)
 {
     jali_adapt_options opt = jali_adapt_defaults();

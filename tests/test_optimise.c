@@ -107,18 +107,6 @@ static void check_framed(const jali_bitmap *picture, double pixel_mm, jali_conte
     jali_bitmap_free(ctx, &drawing);
 }
 
-// Blobs of `grain` px: noise that some of the printer's widths pass and some do not.
-static jali_bitmap random_blobs(uint64_t *seed, int32_t w, int32_t h, int32_t grain, int32_t percent)
-{
-    jali_bitmap small = random_bitmap(seed, w / grain + 1, h / grain + 1, percent), a;
-    CHECK_OK(jali_bitmap_create(ctx, w, h, &a));
-    for (int32_t y = 0; y < h; y++)
-        for (int32_t x = 0; x < w; x++)
-            jali_bitmap_set(&a, x, y, jali_bitmap_get(&small, x / grain, y / grain));
-    jali_bitmap_free(ctx, &small);
-    return a;
-}
-
 TEST(random_pictures_end_in_one_printable_piece)
 {
     static const int32_t sizes[][2] = {{100, 90}, {63, 150}, {129, 64}, {200, 40}};

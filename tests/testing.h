@@ -77,6 +77,18 @@ static inline jali_bitmap random_bitmap(uint64_t *seed, int32_t width, int32_t h
     return bitmap;
 }
 
+/// Blobs of `grain` px: noise that some of the printer's widths pass and some do not.
+static inline jali_bitmap random_blobs(uint64_t *seed, int32_t w, int32_t h, int32_t grain, int32_t percent)
+{
+    jali_bitmap small = random_bitmap(seed, w / grain + 1, h / grain + 1, percent), a;
+    CHECK_OK(jali_bitmap_create(ctx, w, h, &a));
+    for (int32_t y = 0; y < h; y++)
+        for (int32_t x = 0; x < w; x++)
+            jali_bitmap_set(&a, x, y, jali_bitmap_get(&small, x / grain, y / grain));
+    jali_bitmap_free(ctx, &small);
+    return a;
+}
+
 static inline bool same_bitmap(const jali_bitmap *a, const jali_bitmap *b)
 {
     return a->width_px == b->width_px && a->height_px == b->height_px &&
