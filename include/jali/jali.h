@@ -31,6 +31,7 @@
 #include <jali/read.h>
 #include <jali/render.h>
 #include <jali/sample.h>
+#include <jali/sheet.h>
 #include <jali/shell.h>
 #include <jali/surface.h>
 #include <jali/trace.h>
