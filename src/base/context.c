@@ -90,12 +90,32 @@ jali_status fail(jali_context *ctx, jali_status status, const char *format, ...)
     return status;
 }
 
-static void account(jali_context *ctx, size_t bytes)
+static void account(jali_context *ctx, uint64_t bytes)
 {
     uint64_t held = atomic_fetch_add(&ctx->held_bytes, bytes) + bytes;
     uint64_t peak = atomic_load(&ctx->peak_bytes);
     while (held > peak && !atomic_compare_exchange_weak(&ctx->peak_bytes, &peak, held)) {
     }
+}
+
+static jali_status within_limit(jali_context *ctx, uint64_t bytes)
+{
+    if (ctx->opt.max_memory_bytes && atomic_load(&ctx->held_bytes) + bytes > ctx->opt.max_memory_bytes)
+        return fail(ctx, JALI_LIMIT, "%.0f MB more would pass the memory limit of %.0f MB (--max-memory)",
+                    (double)bytes / 1e6, (double)ctx->opt.max_memory_bytes / 1e6);
+    return JALI_OK;
+}
+
+jali_status count_bytes(jali_context *ctx, uint64_t bytes)
+{
+    jali_status status = within_limit(ctx, bytes);
+    if (status == JALI_OK) account(ctx, bytes);
+    return status;
+}
+
+void uncount_bytes(jali_context *ctx, uint64_t bytes)
+{
+    atomic_fetch_sub(&ctx->held_bytes, bytes);
 }
 
 jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t size)
@@ -106,9 +126,8 @@ jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t 
     if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2)
         return fail(ctx, JALI_NO_MEMORY, "%zu items of %zu bytes are more than memory can address", count,
                     size);
-    if (ctx->opt.max_memory_bytes && atomic_load(&ctx->held_bytes) + bytes > ctx->opt.max_memory_bytes)
-        return fail(ctx, JALI_LIMIT, "%.0f MB more would pass the memory limit of %.0f MB (--max-memory)",
-                    (double)bytes / 1e6, (double)ctx->opt.max_memory_bytes / 1e6);
+    jali_status status = within_limit(ctx, bytes);
+    if (status != JALI_OK) return status;
     char *raw = ctx->opt.allocate(ctx->opt.user, bytes + 2 * HEAD_BYTES);
     if (!raw) return fail(ctx, JALI_NO_MEMORY, "no memory for %.3f MB more", (double)bytes / 1e6);
     char *block = raw + HEAD_BYTES + (HEAD_BYTES - (uintptr_t)raw % HEAD_BYTES);
