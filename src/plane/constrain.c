@@ -93,8 +93,7 @@ static jali_status collect(jali_context *ctx, const triangulation *plane, int32_
     return JALI_OK;
 }
 
-// The four corners around side s are in strictly convex position.
-static bool is_convex(const triangulation *plane, int32_t s)
+bool is_convex(const triangulation *plane, int32_t s)
 {
     int32_t o = plane->beside[s];
     const int32_t *p = plane->point[plane->corner[s]], *q = plane->point[plane->corner[o]];

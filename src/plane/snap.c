@@ -361,3 +361,38 @@ done:
     if (status != JALI_OK) snapped_free(ctx, s);
     return status;
 }
+
+jali_status odd_pieces(jali_context *ctx, const int32_t (*piece)[2], int32_t count, int32_t (*odd)[2],
+                       int32_t *odd_count)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    int32_t *table; // [slots], number + 1 of the last such piece, 0 = free
+    size_t slots = 16;
+    uint8_t *often;
+    while (slots < 2 * (size_t)count) slots *= 2;
+    *odd_count = 0;
+    TRY(ARENA(ctx, table, slots));
+    TRY(ARENA(ctx, often, count + 1));
+    memset(table, 0, slots * sizeof *table);
+    for (int32_t i = 0; i < count; i++) {
+        int32_t low = MIN(piece[i][0], piece[i][1]), high = MAX(piece[i][0], piece[i][1]);
+        uint64_t hash = ((uint64_t)(uint32_t)low << 32 | (uint32_t)high) * UINT64_C(0x9e3779b97f4a7c15);
+        size_t slot = (hash ^ hash >> 31) & (slots - 1);
+        for (; table[slot]; slot = (slot + 1) & (slots - 1)) {
+            const int32_t *other = piece[table[slot] - 1];
+            if (MIN(other[0], other[1]) == low && MAX(other[0], other[1]) == high) break;
+        }
+        if (!table[slot]) {
+            table[slot] = i + 1;
+            often[i] = 0;
+        }
+        often[table[slot] - 1] ^= 1;
+        if (table[slot] - 1 != i) often[i] = 0;
+    }
+    for (int32_t i = 0; i < count; i++)
+        if (often[i]) memcpy(odd[(*odd_count)++], piece[i], sizeof *odd);
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}

@@ -31,4 +31,11 @@ jali_status snap_round(jali_context *ctx, const int32_t (*point)[2], int32_t poi
                        const int32_t (*edge)[2], int32_t edge_count, int32_t disjoint, snapped *s,
                        int32_t crossed[2]);
 
+/// The pieces that lie there an odd number of times: where snapping laid a closed chain back on itself,
+/// around a corner that another edge cuts within a unit, the spike goes.
+///   out    odd   [count] room for all; the first of each, in their order
+///   fails  JALI_NO_MEMORY
+jali_status odd_pieces(jali_context *ctx, const int32_t (*piece)[2], int32_t count, int32_t (*odd)[2],
+                       int32_t *odd_count);
+
 #endif

@@ -26,10 +26,13 @@ void triangulation_free(jali_context *ctx, triangulation *plane)
     *plane = (triangulation){0};
 }
 
-// Room for `points` points and their 2 * points - 2 triangles.
-static jali_status reserve(jali_context *ctx, triangulation *plane, int32_t points)
+// A triangulation of n points, closed by ghosts, has 2 n - 2 triangles.
+jali_status reserve_points(jali_context *ctx, triangulation *plane, int32_t points)
 {
     jali_status status;
+    if (points > POINT_LIMIT)
+        return fail(ctx, JALI_LIMIT, "%d points are more than the %d a triangulation holds", points,
+                    POINT_LIMIT);
     size_t sides = 8 * (size_t)points, capacity;
     // Arrays of one length grow alike, so each starts from the length they all have.
     TRY((capacity = plane->point_capacity, GROW(ctx, plane->point, capacity, points)));
@@ -104,7 +107,7 @@ static int32_t add_triangle(triangulation *plane, int32_t a, int32_t b, int32_t 
 }
 
 // Triangle (a, b, c) becomes (a, b, p); (b, c, p) and (c, a, p) are new.
-static void split_triangle(triangulation *plane, int32_t t, int32_t p)
+int32_t split_triangle(triangulation *plane, int32_t t, int32_t p)
 {
     int32_t a = plane->corner[4 * t], b = plane->corner[4 * t + 1], c = plane->corner[4 * t + 2];
     int32_t u = add_triangle(plane, b, c, p), v = add_triangle(plane, c, a, p);
@@ -120,11 +123,11 @@ static void split_triangle(triangulation *plane, int32_t t, int32_t p)
     stack[0] = 4 * t + 2;
     stack[1] = 4 * u + 2;
     stack[2] = 4 * v + 2;
-    settle(plane, p, stack, 3);
+    return 3;
 }
 
 // Point p on side s: the triangles (c, a, b) and (d, b, a) beside it become four. Both halves keep its kind.
-static void split_side(triangulation *plane, int32_t s, int32_t p)
+int32_t split_side(triangulation *plane, int32_t s, int32_t p)
 {
     int32_t o = plane->beside[s], sn = next_side(s), on = next_side(o);
     int32_t a = plane->corner[sn], b = plane->corner[on];
@@ -147,7 +150,19 @@ static void split_side(triangulation *plane, int32_t s, int32_t p)
     stack[1] = last_side(o);
     stack[2] = 4 * u + 1;
     stack[3] = 4 * v + 1;
-    settle(plane, p, stack, 4);
+    return 4;
+}
+
+bool can_split_side(const triangulation *plane, int32_t s, const int32_t at[2])
+{
+    const int32_t *corner = plane->corner, (*point)[2] = (const int32_t(*)[2])plane->point;
+    for (int k = 0; k < 2; k++, s = plane->beside[s]) {
+        int32_t apex = corner[s], from = corner[next_side(s)], to = corner[last_side(s)];
+        if (apex == GHOST || from == GHOST || to == GHOST) continue;
+        if (orientation(point[apex], point[from], at) <= 0 || orientation(point[to], point[apex], at) <= 0)
+            return false;
+    }
+    return true;
 }
 
 // The triangle that holds p, or a ghost beyond whose hull edge p lies. On constrained triangulations a walk
@@ -188,10 +203,8 @@ static void insert_point(triangulation *plane, int32_t p)
                         at) == 0)
             on_side = s;
     }
-    if (on_side >= 0)
-        split_side(plane, on_side, p);
-    else
-        split_triangle(plane, t, p);
+    settle(plane, p, plane->stack,
+           on_side >= 0 ? split_side(plane, on_side, p) : split_triangle(plane, t, p));
 }
 
 // The first triangle and its three ghosts: the first point of the order, the next elsewhere, and the next off
@@ -239,7 +252,7 @@ jali_status insert_points(jali_context *ctx, triangulation *plane, const int32_t
                         point[i][0], point[i][1], COORDINATE_LIMIT);
     if (plane->triangle_count == 0) first = 0; // all on one line so far: begin again
     int32_t end = plane->point_count + count;
-    TRY(reserve(ctx, plane, end));
+    TRY(reserve_points(ctx, plane, end));
     if (count > 0) memcpy(plane->point + plane->point_count, point, (size_t)count * sizeof *point);
     plane->point_count = end;
     for (int32_t i = first; i < end; i++) plane->twin[i] = i;

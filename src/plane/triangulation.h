@@ -9,7 +9,7 @@
 enum { GHOST = -1 };
 
 /// Kinds of constrained edges, one bit each; an edge may be several. Others can be added by later stages.
-enum { EDGE_CONTOUR = 1, EDGE_CREASE = 2 };
+enum { EDGE_CONTOUR = 1, EDGE_CREASE = 2, EDGE_WINDOW = 4, EDGE_OUTLINE = 8 };
 
 /// {0} is valid and empty. Triangle t has the sides 4t, 4t+1, 4t+2; side s lies opposite corner[s] and runs
 /// from corner[next_side(s)] to corner[last_side(s)], counter-clockwise. 4t+3 is unused.
@@ -76,7 +76,7 @@ int32_t side_between(const triangulation *plane, int32_t u, int32_t v);
 ///   out    tone   [triangle_count] 0 or 1; ghosts 0
 jali_status label_tones(jali_context *ctx, const triangulation *plane, uint8_t kinds, uint8_t *tone);
 
-// Shared by the two files that change triangulations.
+// Shared by the files that change triangulations.
 
 /// Let side s and side o be the same edge.
 static inline void join_sides(triangulation *plane, int32_t s, int32_t o)
@@ -88,6 +88,24 @@ static inline void join_sides(triangulation *plane, int32_t s, int32_t o)
 /// Replace the edge of side s by the other diagonal of its two triangles. Side s afterwards lies opposite the
 /// same corner; the new edge is side next_side(s).
 void flip_side(triangulation *plane, int32_t s);
+
+/// Room for `points` points and their triangles in all; the splits below take it as given.
+///   fails  JALI_LIMIT, JALI_NO_MEMORY
+jali_status reserve_points(jali_context *ctx, triangulation *plane, int32_t points);
+
+/// Give triangle t, or the edge of side s, the point p as a corner, and make three or four triangles of it;
+/// both halves of the edge keep its kind. Nothing is flipped: the sides opposite p are put on plane->stack
+/// and their number is returned.
+///   in     t, s   no ghosts; p lies strictly inside (can_split_side tells for an edge)
+int32_t split_triangle(triangulation *plane, int32_t t, int32_t p);
+int32_t split_side(triangulation *plane, int32_t s, int32_t p);
+
+/// True when the edge of side s can be split at a place on it or next to it: the four triangles stay
+/// counter-clockwise, so nothing crosses.
+bool can_split_side(const triangulation *plane, int32_t s, const int32_t at[2]);
+
+/// True when the four corners around side s, no ghost among them, are in strictly convex position.
+bool is_convex(const triangulation *plane, int32_t s);
 
 /// True when point p lies strictly inside the circle of triangle t; that of a ghost is the open half plane
 /// beyond its hull edge, with that edge.
