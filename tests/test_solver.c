@@ -154,7 +154,7 @@ TEST(entries_of_the_inverse_are_those_of_the_solutions)
         CHECK_OK(ALLOCATE(ctx, x, unknowns_of(&m.a)));
         CHECK_OK(solver_open(ctx, &m.a, &s));
         CHECK_OK(solver_factor(ctx, s, &weak));
-        CHECK_OK(solver_inverse(ctx, s, chosen, row, f));
+        CHECK_OK(solver_inverse(ctx, s, chosen, row, chosen, row, f));
         for (int32_t c = 0; c < chosen; c++) {
             memset(x, 0, (size_t)unknowns_of(&m.a) * sizeof *x);
             x[row[c]] = 1;
@@ -218,7 +218,7 @@ static jali_status solve_once(jali_context *limited, void *data)
     TRY(solver_open(limited, &m.a, &s));
     TRY(solver_factor(limited, s, &weak));
     TRY(solver_solve(limited, s, 1, b));
-    TRY(solver_inverse(limited, s, 2, row, f));
+    TRY(solver_inverse(limited, s, 2, row, 2, row, f));
 done:
     solver_close(limited, s);
     release(limited, b);

@@ -98,22 +98,29 @@ done:
     return status;
 }
 
+void element_stiffness(const structure *s, const double node[3][3], double thickness_mm, double *k)
+{
+    facet_material made_of = s->made_of;
+    double flat[3][2];
+    made_of.thickness_mm = thickness_mm;
+    if (!s->bending_only) {
+        facet_stiffness(node, &made_of, (double(*)[18])k);
+        return;
+    }
+    for (int i = 0; i < 3; i++) memcpy(flat[i], node[i], sizeof flat[i]);
+    plate_stiffness((const double(*)[2])flat, &made_of, (double(*)[9])k);
+}
+
 static void stiffness(const structure *s, int32_t t, double *k)
 {
     const jali_sheet *sheet = s->sheet;
-    facet_material made_of = s->made_of;
-    double node[3][3], flat[3][2];
-    made_of.thickness_mm = 0;
+    double node[3][3], thickness_mm = 0;
     for (int i = 0; i < 3; i++) {
         int32_t n = sheet->triangle[t][i];
         memcpy(node[i], sheet->node[n], sizeof node[i]);
-        memcpy(flat[i], sheet->node[n], sizeof flat[i]);
-        made_of.thickness_mm += sheet->thickness_mm[n] / 3;
+        thickness_mm += sheet->thickness_mm[n] / 3;
     }
-    if (s->bending_only)
-        plate_stiffness(flat, &made_of, (double(*)[9])k);
-    else
-        facet_stiffness(node, &made_of, (double(*)[18])k);
+    element_stiffness(s, (const double(*)[3])node, thickness_mm, k);
 }
 
 static double *block_of(const block_matrix *k, int32_t row, int32_t column)

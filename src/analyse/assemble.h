@@ -52,6 +52,20 @@ jali_status structure_solve(jali_context *ctx, structure *s, int32_t count,
 
 void structure_free(jali_context *ctx, structure *s);
 
+/// The unknowns a node has in this structure, from bit 0 or from bit 2 on.
+static inline int node_width(const structure *s)
+{
+    return s->bending_only ? 3 : NODE_UNKNOWNS;
+}
+
+static inline int first_bit(const structure *s)
+{
+    return s->bending_only ? 2 : 0;
+}
+
+/// Stiffness of a triangle of the structure's material: [3 * node_width][3 * node_width].
+void element_stiffness(const structure *s, const double node[3][3], double thickness_mm, double *k);
+
 /// The row of a node's unknown in the system; -1 when it is held.
 static inline int32_t unknown_at(const structure *s, int32_t node, int bit)
 {

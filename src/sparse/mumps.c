@@ -240,33 +240,36 @@ done:
 }
 
 // MUMPS wants the entries by columns of the whole matrix: all columns but the chosen ones are empty.
-static void choose_entries(int32_t unknowns, int32_t count, const int32_t *row, int32_t *first, int32_t *at)
+static void choose_entries(int32_t unknowns, int32_t row_count, const int32_t *row, int32_t column_count,
+                           const int32_t *column, int32_t *first, int32_t *at)
 {
     int32_t chosen = 0;
     for (int32_t i = 0; i <= unknowns; i++) {
-        first[i] = chosen * count + 1;
-        if (chosen < count && row[chosen] == i) chosen++;
+        first[i] = chosen * row_count + 1;
+        if (chosen < column_count && column[chosen] == i) chosen++;
     }
-    for (int32_t c = 0; c < count; c++)
-        for (int32_t r = 0; r < count; r++) at[c * count + r] = row[r] + 1;
+    for (int32_t c = 0; c < column_count; c++)
+        for (int32_t r = 0; r < row_count; r++) at[c * row_count + r] = row[r] + 1;
 }
 
-jali_status solver_inverse(jali_context *ctx, solver *s, int32_t count, const int32_t *row, double *f)
+jali_status solver_inverse(jali_context *ctx, solver *s, int32_t row_count, const int32_t *row,
+                           int32_t column_count, const int32_t *column, double *f)
 {
     jali_status status = JALI_OK;
     DMUMPS_STRUC_C *m = &s->mumps;
     arena_mark mark = arena_here(ctx);
-    int32_t *first, *at;
-    if (count == 0) return JALI_OK;
-    if (count > 32768) return fail(ctx, JALI_LIMIT, "%d rows of an inverse are asked for", count);
+    int32_t *first, *at, entries;
+    if (row_count == 0 || column_count == 0) return JALI_OK;
+    if (__builtin_mul_overflow(row_count, column_count, &entries))
+        return fail(ctx, JALI_LIMIT, "%d x %d entries of an inverse are asked for", row_count, column_count);
     TRY(step(ctx, "solve", 0));
     TRY(ARENA(ctx, first, m->n + 1));
-    TRY(ARENA(ctx, at, count * count));
-    choose_entries(m->n, count, row, first, at);
+    TRY(ARENA(ctx, at, entries));
+    choose_entries(m->n, row_count, row, column_count, column, first, at);
     m->ICNTL(20) = 1;
     m->ICNTL(30) = 1;
     m->nrhs = m->n;
-    m->nz_rhs = count * count;
+    m->nz_rhs = entries;
     m->irhs_ptr = first;
     m->irhs_sparse = at;
     m->rhs_sparse = f;

@@ -32,11 +32,12 @@ jali_status solver_factor(jali_context *ctx, solver *s, int32_t *weak_row);
 ///   inout  x   [count][unknowns] right sides; the solutions
 jali_status solver_solve(jali_context *ctx, solver *s, int32_t count, double *x);
 
-/// The entries of the inverse in the given rows and the same columns: F = P^T A^-1 P.
-///   in     row   [count] unknowns, ascending, each once
-///   out    f     [count][count]
-///   cost   far below that of `count` solutions: only the paths from the rows to the root are walked
-jali_status solver_inverse(jali_context *ctx, solver *s, int32_t count, const int32_t *row, double *f);
+/// Entries of the inverse where some rows meet some columns; with both the same, F = P^T A^-1 P.
+///   in     row, column   unknowns, ascending, each once
+///   out    f             [column_count][row_count]
+///   cost   far below that of as many solutions: only the paths from the unknowns to the root are walked
+jali_status solver_inverse(jali_context *ctx, solver *s, int32_t row_count, const int32_t *row,
+                           int32_t column_count, const int32_t *column, double *f);
 
 solver_figures solver_cost(const solver *s);
 
