@@ -1,9 +1,8 @@
 // MITC3+: another plate triangle of the same theory, to check the one of the library against. Tests only.
 //
 // Source:  Y. Lee, P.-S. Lee, K.-J. Bathe, The MITC3+ shell element and its performance, Computers and
-// Structures
-//          138 (2014) 12-23: rotations with a cubic bubble (condensed), the assumed shear of their Eqs.
-//          (21)-(24). The membrane is the library's.
+//          Structures 138 (2014) 12-23: rotations with a cubic bubble (condensed) and their assumed shear.
+//          The membrane is the library's.
 #ifndef TESTS_MITC_H
 #define TESTS_MITC_H
 

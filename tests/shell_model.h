@@ -1,10 +1,11 @@
-// Small shell models for tests and benches: grids bent into shape, held, loaded and solved. Plain and short:
-// the library's own assembly and solver are not used beyond src/sparse, so that it can judge them.
+// Small shell models for tests and benches: grids bent into shape, held, loaded and solved, with any element.
+// The assembly is plain and its own, the solver is the library's.
 #ifndef TESTS_SHELL_MODEL_H
 #define TESTS_SHELL_MODEL_H
 
 #include "analyse/element.h"
-#include "sparse/sparse.h"
+#include "analyse/recover.h"
+#include "sparse/solver.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -156,89 +157,101 @@ static inline void load_edge(shell_model *m, int axis, double at, const double f
             }
 }
 
-static inline int by_column(const void *a, const void *b)
+static inline int ascending(const void *a, const void *b)
 {
     int32_t p = *(const int32_t *)a, q = *(const int32_t *)b;
     return (p > q) - (p < q);
 }
 
-/// Rows of each node's neighbours and itself: first [node_count + 1], ascending.
-static inline int32_t *neighbours(const shell_model *m, int32_t **first)
+// Each node's neighbours of lower number, and itself, as the rows of a matrix.
+static inline jali_status lay_rows(jali_context *with, const shell_model *m, block_matrix *a)
 {
+    jali_status status;
     int32_t *count = zeros((size_t)m->node_count + 1, sizeof *count);
-    *first = zeros((size_t)m->node_count + 1, sizeof **first);
-    for (int32_t t = 0; t < m->triangle_count; t++)
-        for (int i = 0; i < 3; i++) count[m->triangle[t][i]] += 3;
-    for (int32_t n = 0; n < m->node_count; n++) (*first)[n + 1] = (*first)[n] + count[n];
-    int32_t *list = zeros((size_t)(*first)[m->node_count], sizeof *list);
-    memset(count, 0, ((size_t)m->node_count + 1) * sizeof *count);
-    for (int32_t t = 0; t < m->triangle_count; t++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) {
-                int32_t n = m->triangle[t][i];
-                list[(*first)[n] + count[n]++] = m->triangle[t][j];
-            }
-    int32_t kept = 0;
-    for (int32_t n = 0; n < m->node_count; n++) {
-        int32_t begin = (*first)[n], end = (*first)[n + 1];
-        qsort(list + begin, (size_t)(end - begin), sizeof *list, by_column);
-        (*first)[n] = kept;
-        for (int32_t i = begin; i < end; i++)
-            if (i == begin || list[i] != list[i - 1]) list[kept++] = list[i];
+    TRY(ALLOCATE_CLEARED(with, a->row, m->node_count + 1));
+    TRY(ALLOCATE(with, a->column, 9 * (size_t)m->triangle_count));
+    for (int32_t c = 0; c < 9 * m->triangle_count; c++) {
+        const int32_t *n = m->triangle[c / 9];
+        a->row[n[c % 9 / 3] + 1] += n[c % 3] <= n[c % 9 / 3];
     }
-    (*first)[m->node_count] = kept;
+    for (int32_t n = 0; n < m->node_count; n++) a->row[n + 1] += a->row[n];
+    for (int32_t c = 0; c < 9 * m->triangle_count; c++) {
+        int32_t own = m->triangle[c / 9][c % 9 / 3], other = m->triangle[c / 9][c % 3];
+        if (other <= own) a->column[a->row[own] + count[own]++] = other;
+    }
+    int64_t kept = 0;
+    for (int32_t n = 0; n < m->node_count; n++) { // sort, and drop what comes twice
+        int64_t begin = a->row[n];
+        a->row[n] = kept;
+        qsort(a->column + begin, (size_t)count[n], sizeof *a->column, ascending);
+        for (int64_t i = begin; i < begin + count[n]; i++)
+            if (i == begin || a->column[i] != a->column[i - 1]) a->column[kept++] = a->column[i];
+    }
+    a->row[m->node_count] = kept;
+done:
     free(count);
-    return list;
+    return status;
 }
 
-/// Solve for m->u; returns the status of the factorisation.
+// Add an element's block of two nodes, without what is held.
+static inline void add_block(const shell_model *m, block_matrix *a, int32_t row, int32_t column,
+                             const double k[18][18], int i, int j)
+{
+    int64_t count = a->row[row + 1] - a->row[row];
+    int32_t *found = bsearch(&column, a->column + a->row[row], (size_t)count, sizeof column, ascending);
+    double *to = a->value + a->entry[found - a->column];
+    for (int p = 0; p < 6; p++)
+        for (int q = 0; q < (row == column ? p + 1 : 6); q++)
+            if (!(m->held[row] >> p & 1) && !(m->held[column] >> q & 1)) *to++ += k[6 * i + p][6 * j + q];
+}
+
+/// Solve for m->u.
 static inline jali_status solve_model(jali_context *with, shell_model *m)
 {
-    int32_t *first, *beside = neighbours(m, &first), size = 0;
-    int32_t(*number)[6] = zeros((size_t)m->node_count, sizeof *number);
-    for (int32_t n = 0; n < m->node_count; n++)
-        for (int k = 0; k < 6; k++) number[n][k] = m->held[n] >> k & 1 ? -1 : size++;
-    sparse_matrix a = {.size = size};
-    a.first = zeros((size_t)size + 1, sizeof *a.first);
-    a.column = zeros((size_t)first[m->node_count] * 36, sizeof *a.column);
-    a.value = zeros((size_t)first[m->node_count] * 36, sizeof *a.value);
-    double(*place)[2] = zeros((size_t)size, sizeof *place), (*b)[2] = zeros((size_t)size, sizeof *b);
-    double(*scratch)[2] = zeros((size_t)size, sizeof *scratch);
-    int32_t *order = zeros((size_t)size, sizeof *order), filled = 0;
-    for (int32_t n = 0; n < m->node_count; n++)
-        for (int k = 0; k < 6; k++) {
-            int32_t row = number[n][k];
-            if (row < 0) continue;
-            memcpy(place[row], m->place[n], sizeof place[row]);
-            b[row][0] = m->load[n][k];
-            for (int32_t i = first[n]; i < first[n + 1]; i++)
-                for (int l = 0; l < 6; l++)
-                    if (number[beside[i]][l] >= 0) a.column[filled++] = number[beside[i]][l];
-            a.first[row + 1] = filled;
-        }
+    jali_status status;
+    block_matrix a = {.node_count = m->node_count};
+    solver *s = NULL;
+    uint8_t *width = zeros((size_t)m->node_count, sizeof *width);
+    double *x = zeros(6 * (size_t)m->node_count, sizeof *x);
+    int32_t weak;
+    for (int32_t n = 0; n < m->node_count; n++) width[n] = (uint8_t)(6 - __builtin_popcount(m->held[n]));
+    TRY(lay_rows(with, m, &a));
+    TRY(block_matrix_lay(with, &a, width));
+    memset(a.value, 0, (size_t)a.entry[a.row[m->node_count]] * sizeof *a.value);
     for (int32_t t = 0; t < m->triangle_count; t++) {
         double at[3][3], k[18][18];
+        const int32_t *n = m->triangle[t];
         corners_of(m, t, at);
         m->element((const double(*)[3])at, &m->made_of, k);
-        for (int i = 0; i < 18; i++)
-            for (int j = 0; j < 18; j++) {
-                int32_t row = number[m->triangle[t][i / 6]][i % 6], to = number[m->triangle[t][j / 6]][j % 6];
-                if (row < 0 || to < 0) continue;
-                int32_t *found = bsearch(&to, a.column + a.first[row],
-                                         (size_t)(a.first[row + 1] - a.first[row]), sizeof to, by_column);
-                a.value[found - a.column] += k[i][j];
-            }
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                if (n[j] <= n[i]) add_block(m, &a, n[i], n[j], (const double(*)[18])k, i, j);
     }
-    sparse_factor f = {0};
-    jali_status status = sparse_order(with, &a, (const double(*)[2])place, order);
-    if (status == JALI_OK) status = sparse_factorise(with, &a, order, &f);
-    if (status == JALI_OK) sparse_solve(&f, b, scratch);
-    for (int32_t n = 0; n < m->node_count; n++)
-        for (int k = 0; k < 6; k++) m->u[n][k] = number[n][k] >= 0 ? b[number[n][k]][0] : 0;
-    sparse_factor_free(with, &f);
-    free(first), free(beside), free(number), free(a.first), free(a.column), free(a.value);
-    free(place), free(b), free(scratch), free(order);
+    for (int32_t n = 0, at = 0; n < m->node_count; n++)
+        for (int k = 0; k < 6; k++)
+            if (!(m->held[n] >> k & 1)) x[at++] = m->load[n][k];
+    TRY(solver_open(with, &a, &s));
+    TRY(solver_factor(with, s, &weak));
+    TRY(solver_solve(with, s, 1, x));
+    for (int32_t n = 0, at = 0; n < m->node_count; n++)
+        for (int k = 0; k < 6; k++) m->u[n][k] = m->held[n] >> k & 1 ? 0 : x[at++];
+done:
+    solver_close(with, s);
+    block_matrix_free(with, &a);
+    free(width);
+    free(x);
     return status;
+}
+
+/// The model as a sheet; its thickness is freed by the caller, the rest is the model's.
+static inline jali_sheet model_sheet(const shell_model *m)
+{
+    jali_sheet sheet = {.node_count = m->node_count, .triangle_count = m->triangle_count};
+    sheet.node = m->node;
+    sheet.triangle = m->triangle;
+    sheet.thickness_mm = zeros((size_t)m->node_count, sizeof *sheet.thickness_mm);
+    for (int32_t n = 0; n < m->node_count; n++) sheet.thickness_mm[n] = m->made_of.thickness_mm;
+    return sheet;
 }
 
 #endif

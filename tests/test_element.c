@@ -132,7 +132,7 @@ typedef struct strained {
     double frame[3][3];   // the plane's axes
 } strained;
 
-static void unknowns_of(const strained *s, const double at[3], double u[6])
+static void unknowns_in(const strained *s, const double at[3], double u[6])
 {
     double p[2] = {0, 0}, own[6];
     for (int c = 0; c < 3; c++) p[0] += s->frame[0][c] * at[c], p[1] += s->frame[1][c] * at[c];
@@ -177,7 +177,7 @@ static void check_patch(stiffness_of *element, uint64_t *seed)
         double p[2] = {m.node[n][0] + 0.12 * (uniform(seed) - 0.5),
                        m.node[n][1] + 0.12 * (uniform(seed) - 0.5)};
         for (int c = 0; c < 3; c++) m.node[n][c] = s.frame[0][c] * p[0] * 9 + s.frame[1][c] * p[1] * 5;
-        unknowns_of(&s, m.node[n], m.u[n]);
+        unknowns_in(&s, m.node[n], m.u[n]);
     }
     plane_stress p = plane_stress_of(&PLASTIC);
     double h = PLASTIC.thickness_mm, bends = -h * h * h / 12;

@@ -1,17 +1,14 @@
 // Bending with transverse shear of a flat triangle: DKMT, the discrete Kirchhoff-Mindlin triangle.
 //
 // Source:  I. Katili, A new discrete Kirchhoff-Mindlin element based on Mindlin-Reissner plate theory and
-// assumed
-//          shear strain fields, part I, Int. J. Numer. Meth. Engng 36 (1993) 1859-1883.
-// How:     The normals turn linearly between the nodes, and along each side as a parabola besides (his Eq.
-// 22),
-//          by as much as makes the shear of a side agree, in the mean, with the equilibrium of a strip that
-//          bends along it (Eqs. 30-35). What is left to know of a side is its shear strain summed along it,
+//          assumed shear strain fields, part I, Int. J. Numer. Meth. Engng 36 (1993) 1859-1883.
+// How:     The normals turn linearly between the nodes, and along each side as a parabola besides, by as much
+//          as makes the shear of the side agree, in the mean, with the equilibrium of a strip that bends
+//          along it. What is left to know of a side is its shear strain summed along it,
 //              W = w_j - w_i + (b_i + b_j) . side / 2,
 //          of which 1/(1 + phi) bends the side and phi/(1 + phi) shears it, phi = 12 D_b / (D_s length^2).
-//          The shear field that has those tangential values on the sides is linear (his Eqs. 27-29 are
-//          Whitney's edge functions), and so are the curvatures: all integrals are closed sums over the
-//          corners.
+//          The shear field with those tangential values on the sides is linear (Whitney's edge functions),
+//          and so are the curvatures: all integrals are closed sums over the corners.
 // Limits:  one layer; shear factor 5/6. Thin (phi -> 0) it is DKT.
 // Checked: tests/test_element.c, tests/test_published.c.
 #include "analyse/modes.h"

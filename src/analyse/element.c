@@ -99,6 +99,27 @@ void facet_resultants(const double node[3][3], const facet_material *made_of, co
     bending_resultants(&t, made_of, mode + 6, at);
 }
 
+// A membrane with rotations about its normal takes the force across a side as that of a line load, ends fixed
+// by 3/2 (alpha_b) of its moments; at a fold those of the two facets leave a moment about the side's normal,
+// against which the pressure's has to stand.
+void facet_pressure(const double node[3][3], double pressure_mpa, double load[3][6])
+{
+    double frame[3][3];
+    facet_frame(node, frame);
+    flat_triangle t = facet_flat(node, (const double(*)[3])frame);
+    double third = pressure_mpa * t.area / 3, fixed = 1.5 * pressure_mpa * t.area / 24;
+    for (int i = 0; i < 3; i++) {
+        // The deflection of a side with slopes s_i, s_j at its ends is a_i a_j (s_i - s_j) . side / 2, whose
+        // integral is a 24th of the area: moments about the normal of the side in the plane.
+        const double *next = t.side[i], *last = t.side[(i + 2) % 3];
+        double about[2] = {fixed * (next[1] - last[1]), -fixed * (next[0] - last[0])};
+        for (int c = 0; c < 3; c++) {
+            load[i][c] = third * frame[2][c];
+            load[i][3 + c] = about[0] * frame[0][c] + about[1] * frame[1][c];
+        }
+    }
+}
+
 VECTORISED void plate_stiffness(const double node[3][2], const facet_material *made_of, double k[9][9])
 {
     double row[6][9], stiff[6][6], force[6][9];

@@ -31,7 +31,13 @@ void facet_stiffness(const double node[3][3], const facet_material *made_of, dou
 void facet_resultants(const double node[3][3], const facet_material *made_of, const double u[18],
                       resultants at[3]);
 
-/// The same for a flat plate in the xy plane under transverse load alone: bending and shear.
+/// Forces and moments at the nodes from a pressure along the normal (z of facet_frame). The moments are what
+/// a force along the fold between two facets needs; they cancel but for contours, where a curved sheet
+/// without them opens too far (7 % of the hoop stress at the end of a pipe with 16 facets a quarter; 0.1 %
+/// with them). On flat plates a third of the force at each node does as well.
+void facet_pressure(const double node[3][3], double pressure_mpa, double load[3][6]);
+
+/// Stiffness of a flat plate in the xy plane under transverse load alone: bending and shear.
 void plate_stiffness(const double node[3][2], const facet_material *made_of, double k[9][9]);
 
 #endif

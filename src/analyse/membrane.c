@@ -1,18 +1,15 @@
-// Stretching of a flat triangle with rotations about its normal: the optimal membrane triangle (OPT, from
-// ANDES).
+// Stretching of a flat triangle with rotations about its normal: the optimal membrane triangle (OPT).
 //
 // Source:  C. A. Felippa, A study of optimal membrane triangles with drilling freedoms, report CU-CAS-03-02,
-// 2003
-//          (Comput. Methods Appl. Mech. Engng 192 (2003) 2125-2168): the basic stiffness of his Eqs.
-//          (25)-(28), the higher-order one of Eqs. (29)-(38) and the parameters of OPT (his Table 2).
+//          2003 (also Comput. Methods Appl. Mech. Engng 192 (2003) 2125-2168): the basic and the higher order
+//          stiffness of the ANDES template with the parameters of its optimal member.
 // How:     The mean strains are those of sides that bend with the rotations at their ends (alpha_b = 3/2).
 // The
 //          corners' rotations beyond the triangle's own strain it linearly, with mean zero, by the integers
-//          beta_1
-//          .. beta_9; beta_0 = (1 - 4 nu^2)/2 makes bending in the plane exact at every aspect ratio. With
-//          area coordinates his lengths cancel: the natural strain of side ij enters as the product of two
-//          gradients.
-// Limits:  beta_0 is kept at 0.01 or more, his own limit, which holds from nu = 0.495 on.
+//          beta_1 .. beta_9; beta_0 = (1 - 4 nu^2)/2 makes the energy of bending in the plane exact at every
+//          aspect ratio. With area coordinates his lengths cancel: the natural strain of side ij enters as
+//          the product of two gradients.
+// Limits:  beta_0 is kept at 0.01 or more, as he advises; that holds from nu = 0.495 on.
 // Checked: tests/test_element.c, tests/test_published.c.
 #include "analyse/modes.h"
 
