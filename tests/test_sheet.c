@@ -4,7 +4,9 @@
 #include "judge_sheet.h"
 
 #include <jali/carve.h>
+#include <jali/place.h>
 #include <jali/sheet.h>
+#include <jali/trace.h>
 
 #include <math.h>
 
@@ -290,6 +292,146 @@ TEST(refused_memory_is_said_and_nothing_leaks)
     refuse_each_allocation(mesh_once, &s);
 }
 
+// --- Surfaces
+
+typedef struct laid {
+    jali_shell shell;
+    jali_chart chart;
+    jali_patch patch;
+    jali_contours contours;
+} laid;
+
+static void laid_free(laid *on)
+{
+    jali_shell_free(ctx, &on->shell);
+    jali_chart_free(ctx, &on->chart);
+    jali_patch_free(ctx, &on->patch);
+    jali_contours_free(ctx, &on->contours);
+}
+
+// A picture with three voids, `width_mm` wide, on a surface with a wall of 2 mm.
+static laid lay(const char *surface_words, jali_placing placing, double width_mm)
+{
+    laid on = {0};
+    jali_surface surface;
+    jali_place_options opt = jali_place_defaults();
+    jali_bitmap drawing;
+    enum { SIDE = 120 };
+    jali_picture picture = {.width_px = SIDE, .height_px = SIDE};
+    CHECK_OK(ALLOCATE(ctx, picture.grey, SIDE * SIDE));
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            picture.grey[y * SIDE + x] = hypot(x - 35, y - 40) < 22 || hypot(x - 85, y - 45) < 20 ||
+                                                 (y > 75 && y < 100 && x > 20 && x < 95 + y / 10)
+                                             ? 0
+                                             : 255;
+    opt.width_mm = width_mm;
+    opt.placing = placing;
+    CHECK_OK(jali_surface_make(ctx, surface_words, NULL, &surface));
+    CHECK_OK(jali_shell_create(ctx, &surface, NULL, &on.shell, NULL));
+    CHECK_OK(jali_place_on(ctx, &picture, 128, &opt, &on.shell.outer, &on.chart, &on.patch, &drawing, NULL));
+    CHECK_OK(jali_trace(ctx, &drawing, &on.chart, NULL, &on.contours));
+    CHECK_INT(on.contours.contour_count, 3);
+    jali_bitmap_free(ctx, &drawing);
+    jali_picture_free(ctx, &picture);
+    return on;
+}
+
+static jali_sheet sheet_on(const laid *on, bool whole, int32_t across)
+{
+    jali_sheet sheet;
+    jali_sheet_options opt = {.phi_s_mm = 0.3, .across = across, .whole = whole};
+    CHECK_OK(jali_sheet_shell(ctx, &on->contours, &on->chart, &on->patch, &on->shell, &opt, &sheet));
+    CHECK(is_manifold(&sheet));
+    CHECK(!sheet.flat);
+    return sheet;
+}
+
+TEST(a_picture_wrapped_on_a_cylinder_keeps_its_area)
+{
+    laid on = lay("cylinder:r=20,h=60,tolerance=0.002", JALI_PLACE_WRAP, 30);
+    jali_sheet sheet = sheet_on(&on, false, 4);
+    // The middle of the wall is 1 mm further in: 19 / 20 of the width.
+    double window = pow((on.chart.width_px - 2 * on.chart.margin_px) * jali_chart_pixel_mm(&on.chart), 2);
+    double solid = (window + contour_area(&on.contours)) * 19 / 20;
+    CHECK(fabs(area_of(&sheet) / solid - 1) < 0.002);
+    CHECK(quality_of(&sheet).least_degrees > 24);
+    for (int32_t i = 0; i < sheet.node_count; i++) {
+        CHECK(fabs(hypot(sheet.node[i][0], sheet.node[i][1]) - 19) < 0.01);
+        CHECK(fabs(sheet.thickness_mm[i] - 2) < 0.01);
+        CHECK((sheet.border[i] & ~(JALI_BORDER_VOID | JALI_BORDER_PICTURE)) == 0 &&
+              sheet.at[i][0] != INT32_MIN);
+    }
+    jali_sheet_free(ctx, &sheet);
+    laid_free(&on);
+}
+
+TEST(the_rest_of_a_surface_joins_node_by_node)
+{
+    laid on = lay("cylinder:r=20,h=60,tolerance=0.05", JALI_PLACE_WRAP, 30);
+    jali_sheet sheet = sheet_on(&on, true, 2);
+    double facets = 0; // the middle of the wall, from its own facets
+    for (int32_t t = 0; t < on.shell.outer.mesh.triangle_count; t++) {
+        double corner[3][3];
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++) {
+                int32_t v = on.shell.outer.mesh.triangle[t][i];
+                corner[i][k] = 0.5 * (on.shell.outer.mesh.vertex[v][k] + on.shell.inner[v][k]);
+            }
+        jali_sheet one = {.triangle_count = 1, .node = corner, .triangle = (int32_t[1][3]){{0, 1, 2}}};
+        facets += area_of(&one);
+    }
+    CHECK(fabs(area_of(&sheet) / (facets + contour_area(&on.contours) * 19 / 20) - 1) < 0.002);
+    int32_t off_chart = 0;
+    for (int32_t i = 0; i < sheet.node_count; i++) {
+        double z = sheet.node[i][2];
+        bool rim = z < 1e-9 || z > 60 - 1e-9;
+        CHECK(rim == ((sheet.border[i] & JALI_BORDER_RIM) != 0) && !(sheet.border[i] & JALI_BORDER_PICTURE));
+        off_chart += sheet.at[i][0] == INT32_MIN;
+    }
+    CHECK(off_chart > 100);
+    // One piece with two rims and three voids: Euler's characteristic of a tube less three.
+    int64_t edges = 0;
+    int32_t *beside = edges_beside(&sheet);
+    for (int32_t i = 0; i < 3 * sheet.triangle_count; i++) edges += beside[i] < i;
+    CHECK_INT(sheet.node_count - edges + sheet.triangle_count, -3);
+    free(beside);
+    jali_sheet_free(ctx, &sheet);
+    laid_free(&on);
+}
+
+TEST(a_projection_keeps_its_angles_on_the_surface)
+{
+    const char *surfaces[] = {"sphere:r=20", "vase:tulip,h=60", "cone:r=20,top=12,h=50"};
+    for (size_t i = 0; i < sizeof surfaces / sizeof *surfaces; i++) {
+        laid on = lay(surfaces[i], JALI_PLACE_PROJECT, 18);
+        for (int whole = 0; whole < 2; whole++) {
+            jali_sheet sheet = sheet_on(&on, whole, 4);
+            if (!whole) CHECK(quality_of(&sheet).share_below_20 < 0.001);
+            jali_sheet_free(ctx, &sheet);
+        }
+        laid_free(&on);
+    }
+}
+
+static jali_status mesh_surface_once(jali_context *limited, void *data)
+{
+    const laid *on = data;
+    jali_sheet sheet;
+    jali_sheet_options opt = {.phi_s_mm = 1, .across = 1, .whole = true};
+    jali_status status =
+        jali_sheet_shell(limited, &on->contours, &on->chart, &on->patch, &on->shell, &opt, &sheet);
+    jali_sheet_free(limited, &sheet);
+    return status;
+}
+
+TEST(refused_memory_on_a_surface_is_said_and_nothing_leaks)
+{
+    laid on = lay("cylinder:r=20,h=60,tolerance=0.5", JALI_PLACE_WRAP, 30);
+    refuse_each_allocation(mesh_surface_once, &on);
+    laid_free(&on);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -302,6 +444,10 @@ int main(void)
         cmocka_unit_test(random_voids_keep_every_promise),
         cmocka_unit_test(the_same_sheet_with_any_number_of_threads),
         cmocka_unit_test(refused_memory_is_said_and_nothing_leaks),
+        cmocka_unit_test(a_picture_wrapped_on_a_cylinder_keeps_its_area),
+        cmocka_unit_test(the_rest_of_a_surface_joins_node_by_node),
+        cmocka_unit_test(a_projection_keeps_its_angles_on_the_surface),
+        cmocka_unit_test(refused_memory_on_a_surface_is_said_and_nothing_leaks),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);
 }

@@ -190,7 +190,7 @@ jali_status jali_sheet_plate(jali_context *ctx, const jali_contours *plate, cons
     plate_sheet p = {plate, chart, thickness_mm, window_of(chart), !opt.whole && chart->outside_solid,
                      {0},   {0},   {0}};
     sheet_lengths length;
-    int32_t *home;
+    int32_t *home, astray;
     *sheet = (jali_sheet){.flat = true};
     TRY(step(ctx, "mesh", 0));
     TRY(check_sheet_options(ctx, &opt));
@@ -203,7 +203,7 @@ jali_status jali_sheet_plate(jali_context *ctx, const jali_contours *plate, cons
     double extent =
         MAX(p.window.high[0] - p.window.low[0], p.window.high[1] - p.window.low[1]) * chart->unit_mm;
     set_lengths(&p.fine, &opt, extent, chart->unit_mm / p.drawing.scale, &length);
-    TRY(refinement_begin(ctx, &p.fine));
+    TRY(refinement_begin(ctx, &p.fine, &astray));
     TRY(refine_sizes(ctx, &p.fine, opt.across, length.finest, length.coarsest, SHEET_GROWTH));
     TRY(refine_triangles(ctx, &p.fine));
     TRY(gather_sheet(ctx, &p.fine, p.drawing.scale, &(node_source){locate_on_plate, border_of_plate, &p},

@@ -35,7 +35,7 @@ void refinement_free(jali_context *ctx, refinement *r)
 {
     release(ctx, r->inside);
     release(ctx, r->size);
-    release(ctx, r->place);
+    release(ctx, r->spot);
     release(ctx, r->waiting.next);
     *r = (refinement){0};
 }
@@ -48,34 +48,54 @@ static jali_status make_room(jali_context *ctx, refinement *r, int32_t points)
     TRY(reserve_points(ctx, r->plane, points));
     TRY(GROW(ctx, r->inside, r->inside_capacity, triangles));
     TRY(GROW(ctx, r->waiting.next, r->waiting_capacity, triangles));
-    if (r->place) TRY(GROW(ctx, r->place, r->place_capacity, points));
+    if (r->measure != BY_LATTICE) TRY(GROW(ctx, r->spot, r->spot_capacity, points));
     TRY(GROW(ctx, r->size, r->size_capacity, points));
 done:
     return status;
 }
 
-jali_status refinement_begin(jali_context *ctx, refinement *r)
+jali_status refinement_begin(jali_context *ctx, refinement *r, int32_t *astray)
 {
-    jali_status status = make_room(ctx, r, r->plane->point_count + r->plane->point_count / 2 + 16);
+    triangulation *plane = r->plane;
+    *astray = NONE;
+    jali_status status = make_room(ctx, r, plane->point_count + plane->point_count / 2 + 16);
     if (status != JALI_OK) return status;
-    for (int32_t t = 0; t < r->plane->triangle_count; t++) r->waiting.next[t] = NOT_WAITING;
-    for (int32_t p = 0; p < r->plane->point_count; p++) r->size[p] = 0;
+    for (int32_t p = 0; p < plane->point_count; p++) r->size[p] = INFINITY;
+    if (r->spot) memset(r->spot, 0, (size_t)plane->point_count * sizeof *r->spot);
+    for (int32_t t = 0; t < plane->triangle_count; t++) {
+        r->waiting.next[t] = NOT_WAITING;
+        for (int k = 0; k < 3 && r->inside[t] && r->spot; k++) {
+            int32_t p = plane->corner[4 * t + k];
+            if (r->spot[p].metric[0] > 0) continue;
+            if (!r->lifting.lift(r->lifting.shared, plane->point[p], &r->spot[p], &r->size[p])) *astray = p;
+        }
+    }
     r->waiting.filled = 0;
     return JALI_OK;
 }
 
 // --- Lengths and forms
 
+static double squared_gap(const refinement *r, const int32_t from[2], const spot *from_spot,
+                          const int32_t to[2], const spot *to_spot)
+{
+    double dx = to[0] - from[0], dy = to[1] - from[1], sum = 0;
+    if (r->measure == BY_LATTICE) return dx * dx + dy * dy;
+    if (r->measure == BY_METRIC) {
+        const double *a = from_spot->metric, *b = to_spot->metric;
+        return 0.5 * ((a[0] + b[0]) * dx * dx + 2 * (a[1] + b[1]) * dx * dy + (a[2] + b[2]) * dy * dy);
+    }
+    for (int k = 0; k < 3; k++) {
+        double d = to_spot->place[k] - from_spot->place[k];
+        sum += d * d;
+    }
+    return sum;
+}
+
 double squared_length(const refinement *r, int32_t a, int32_t b)
 {
-    if (!r->place) {
-        const int32_t *from = r->plane->point[a], *to = r->plane->point[b];
-        double dx = to[0] - from[0], dy = to[1] - from[1];
-        return dx * dx + dy * dy;
-    }
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += (r->place[b][k] - r->place[a][k]) * (r->place[b][k] - r->place[a][k]);
-    return sum;
+    return squared_gap(r, r->plane->point[a], r->spot + (r->spot ? a : 0), r->plane->point[b],
+                       r->spot + (r->spot ? b : 0));
 }
 
 form form_of(const refinement *r, int32_t t)
@@ -105,9 +125,11 @@ static bool too_large(const form *f, double size)
     return f->radius > RADIUS_A_SIZE * size;
 }
 
-// A small angle; not one that two edges which must stay enclose.
+// A small angle; not one that two edges which must stay enclose. Metrics leap at creases and make angles that
+// are not there: under them sizes alone count.
 static bool too_sharp(const refinement *r, const form *f)
 {
+    if (r->measure == BY_METRIC) return false;
     return f->radius > RADIUS_A_SIDE * f->length && f->length > r->least &&
            !(r->plane->kind[next_side(f->side)] && r->plane->kind[last_side(f->side)]);
 }
@@ -123,8 +145,8 @@ static void put(refinement *r, int32_t t)
 
 // --- New points
 
-// The sum of the angles opposite the edge of side s exceeds a half turn, in space.
-static bool flips_in_space(const refinement *r, int32_t s)
+// The sum of the angles opposite the edge of side s exceeds a half turn, on the surface.
+static bool flips_on_surface(const refinement *r, int32_t s)
 {
     int32_t o = r->plane->beside[s], a = r->plane->corner[next_side(s)], b = r->plane->corner[last_side(s)];
     double cotangents = 0, edge = squared_length(r, a, b);
@@ -137,15 +159,20 @@ static bool flips_in_space(const refinement *r, int32_t s)
     return cotangents < -1e-9 && is_convex(r->plane, r->plane->beside[o]);
 }
 
-static void settle(refinement *r, int32_t p, int32_t depth)
+static bool flips(const refinement *r, int32_t s)
+{
+    if (r->plane->kind[s] != 0) return false;
+    if (r->measure != BY_LATTICE && r->inside[s >> 2]) return flips_on_surface(r, s);
+    return in_disc(r->plane, r->plane->beside[s] >> 2, r->plane->corner[s]);
+}
+
+// Lawson's flips, from the sides opposite a new point.
+static void settle(refinement *r, int32_t depth)
 {
     triangulation *plane = r->plane;
     while (depth > 0) {
         int32_t s = plane->stack[--depth];
-        if (plane->kind[s] != 0) continue;
-        bool flips =
-            r->place && r->inside[s >> 2] ? flips_in_space(r, s) : in_disc(plane, plane->beside[s] >> 2, p);
-        if (!flips) continue;
+        if (!flips(r, s)) continue;
         int32_t other = last_side(plane->beside[s]);
         flip_side(plane, s);
         plane->stack[depth++] = s;
@@ -164,24 +191,35 @@ static void put_around(refinement *r, int32_t p)
     } while (s != first);
 }
 
+// A place under consideration: where it lies, and which size is allowed there.
+typedef struct candidate {
+    int32_t at[2];
+    spot spot;
+    double most;
+} candidate;
+
+// False where the surface does not lie.
+static bool lift(const refinement *r, candidate *c)
+{
+    c->most = INFINITY;
+    return !r->spot || r->lifting.lift(r->lifting.shared, c->at, &c->spot, &c->most);
+}
+
 // Store a point at a place that is known to be free; it has no triangles yet.
-static jali_status add_point(jali_context *ctx, refinement *r, const int32_t at[2], int32_t near, double size,
-                             int32_t *p)
+static jali_status add_point(jali_context *ctx, refinement *r, const candidate *c, double size, int32_t *p)
 {
     triangulation *plane = r->plane;
-    double place[3];
     *p = -1;
-    if (r->place && !r->lifting.lift(r->lifting.shared, at, near, place)) return JALI_OK;
     int32_t points = plane->point_count;
     if ((size_t)points + 1 > r->size_capacity || (size_t)points + 1 > plane->point_capacity) {
         jali_status status = make_room(ctx, r, points + points / 2 + 16);
         if (status != JALI_OK) return status;
     }
     *p = plane->point_count++;
-    memcpy(plane->point[*p], at, sizeof *plane->point);
+    memcpy(plane->point[*p], c->at, sizeof *plane->point);
     plane->twin[*p] = *p;
-    r->size[*p] = size;
-    if (r->place) memcpy(r->place[*p], place, sizeof place);
+    r->size[*p] = MIN(size, c->most);
+    if (r->spot) r->spot[*p] = c->spot;
     if (*p % POINTS_A_STEP == 0) return step(ctx, "mesh", 0.5);
     return JALI_OK;
 }
@@ -195,28 +233,29 @@ static void note_triangles(refinement *r, int32_t from_first, int32_t from_secon
     r->waiting.next[made] = r->waiting.next[made + 1] = NOT_WAITING;
 }
 
-static jali_status split_at(jali_context *ctx, refinement *r, int32_t s, const int32_t at[2], double size,
+static jali_status split_at(jali_context *ctx, refinement *r, int32_t s, const candidate *c, double size,
                             int32_t *p)
 {
     *p = -1;
-    if (!can_split_side(r->plane, s, at)) return JALI_OK;
+    if (!can_split_side(r->plane, s, c->at)) return JALI_OK;
     int32_t t = s >> 2, o = r->plane->beside[s] >> 2;
-    jali_status status = add_point(ctx, r, at, r->plane->corner[next_side(s)], size, p);
+    jali_status status = add_point(ctx, r, c, size, p);
     if (status != JALI_OK || *p < 0) return status;
     int32_t depth = split_side(r->plane, s, *p);
     note_triangles(r, t, o);
-    settle(r, *p, depth);
+    settle(r, depth);
     return JALI_OK;
 }
 
 jali_status split_border(jali_context *ctx, refinement *r, int32_t s, double share, int32_t *p)
 {
-    int32_t a = r->plane->corner[next_side(s)], b = r->plane->corner[last_side(s)], at[2];
+    int32_t a = r->plane->corner[next_side(s)], b = r->plane->corner[last_side(s)];
+    candidate c;
     for (int k = 0; k < 2; k++)
-        at[k] = (int32_t)lrint((1 - share) * r->plane->point[a][k] + share * r->plane->point[b][k]);
+        c.at[k] = (int32_t)lrint((1 - share) * r->plane->point[a][k] + share * r->plane->point[b][k]);
     *p = -1;
-    if (r->plane->kind[s] & r->fixed) return JALI_OK;
-    return split_at(ctx, r, s, at, (1 - share) * r->size[a] + share * r->size[b], p);
+    if ((r->plane->kind[s] & r->fixed) || !lift(r, &c)) return JALI_OK;
+    return split_at(ctx, r, s, &c, (1 - share) * r->size[a] + share * r->size[b], p);
 }
 
 // --- One bad triangle
@@ -246,28 +285,29 @@ static int32_t walk(const triangulation *plane, int32_t t, const int32_t at[2], 
     return NONE;
 }
 
-// A constrained edge around triangle t, or around its neighbours, that is too near to a place.
-static int32_t near_border(const refinement *r, int32_t t, const double place[3])
+static double squared_to(const refinement *r, const candidate *c, int32_t p)
 {
-    const triangulation *plane = r->plane;
-    for (int32_t i = 0; i < 9; i++) {
-        int32_t s = 4 * t + i / 3;
-        if (!plane->kind[s]) {
-            if (i % 3 == 0) continue;
-            s = i % 3 == 1 ? next_side(plane->beside[s]) : last_side(plane->beside[s]);
-        } else if (i % 3 > 0)
-            continue;
-        if (!plane->kind[s]) continue;
-        int32_t a = plane->corner[next_side(s)], b = plane->corner[last_side(s)];
-        double dot = 0, to_a = 0, to_b = 0;
-        for (int k = 0; k < 3; k++) {
-            double da = (r->place ? r->place[a][k] : k < 2 ? plane->point[a][k] : 0) - place[k];
-            double db = (r->place ? r->place[b][k] : k < 2 ? plane->point[b][k] : 0) - place[k];
-            dot += da * db;
-            to_a += da * da;
-            to_b += db * db;
-        }
-        if (dot < 0 && dot * dot > TOO_NEAR_COSINE * TOO_NEAR_COSINE * to_a * to_b) return s;
+    return squared_gap(r, c->at, &c->spot, r->plane->point[p], r->spot + (r->spot ? p : 0));
+}
+
+// Side s is constrained and seen from the place under a wide angle.
+static bool too_near(const refinement *r, const candidate *c, int32_t s)
+{
+    if (!r->plane->kind[s]) return false;
+    int32_t a = r->plane->corner[next_side(s)], b = r->plane->corner[last_side(s)];
+    double to_a = squared_to(r, c, a), to_b = squared_to(r, c, b);
+    return to_a + to_b - squared_length(r, a, b) < 2 * TOO_NEAR_COSINE * sqrt(to_a * to_b);
+}
+
+// A constrained edge of triangle t, or of its neighbours, that is too near to a place.
+static int32_t near_border(const refinement *r, int32_t t, const candidate *c)
+{
+    for (int32_t s = 4 * t; s < 4 * t + 3; s++) {
+        int32_t o = r->plane->beside[s];
+        if (too_near(r, c, s)) return s;
+        if (r->plane->kind[s]) continue;
+        if (too_near(r, c, next_side(o))) return next_side(o);
+        if (too_near(r, c, last_side(o))) return last_side(o);
     }
     return NONE;
 }
@@ -308,48 +348,33 @@ static jali_status give_way(jali_context *ctx, refinement *r, int32_t s, bool sh
 }
 
 // Add a point strictly inside triangle t, or on one of its free sides.
-static jali_status add_inside(jali_context *ctx, refinement *r, int32_t t, const int32_t at[2], int32_t *p)
+static jali_status add_inside(jali_context *ctx, refinement *r, int32_t t, const candidate *c, int32_t *p)
 {
     double share[3], size = 0;
     const int32_t *corner = r->plane->corner + 4 * t;
-    shares_at(r->plane, t, at, share);
+    shares_at(r->plane, t, c->at, share);
     *p = -1;
     for (int k = 0; k < 3; k++) size += share[k] * r->size[corner[k]];
     for (int k = 0; k < 3; k++)
         if (share[k] <= 0) {
             if (r->plane->kind[4 * t + k]) return JALI_OK;
-            return split_at(ctx, r, 4 * t + k, at, size, p);
+            return split_at(ctx, r, 4 * t + k, c, size, p);
         }
-    jali_status status = add_point(ctx, r, at, corner[0], size, p);
+    jali_status status = add_point(ctx, r, c, size, p);
     if (status != JALI_OK || *p < 0) return status;
     int32_t depth = split_triangle(r->plane, t, *p);
     note_triangles(r, t, t);
-    settle(r, *p, depth);
+    settle(r, depth);
     return JALI_OK;
 }
 
-static void place_in(const refinement *r, int32_t t, const int32_t at[2], double place[3])
+// No corner of triangle t and none opposite it is nearer than that.
+static bool is_clear(const refinement *r, int32_t t, const candidate *c, double least)
 {
-    const int32_t *corner = r->plane->corner + 4 * t;
-    double share[3];
-    place[0] = at[0], place[1] = at[1], place[2] = 0;
-    if (!r->place) return;
-    shares_at(r->plane, t, at, share);
-    for (int k = 0; k < 3; k++)
-        place[k] = share[0] * r->place[corner[0]][k] + share[1] * r->place[corner[1]][k] +
-                   share[2] * r->place[corner[2]][k];
-}
-
-static bool clear_of_corners(const refinement *r, int32_t t, const double place[3], double least)
-{
-    for (int i = 0; i < 3; i++) {
-        int32_t c = r->plane->corner[4 * t + i];
-        double sum = 0;
-        for (int k = 0; k < 3; k++) {
-            double d = (r->place ? r->place[c][k] : k < 2 ? r->plane->point[c][k] : 0) - place[k];
-            sum += d * d;
-        }
-        if (sum < least * least) return false;
+    for (int32_t s = 4 * t; s < 4 * t + 3; s++) {
+        if (squared_to(r, c, r->plane->corner[s]) < least * least) return false;
+        if (!r->plane->kind[s] && squared_to(r, c, r->plane->corner[r->plane->beside[s]]) < least * least)
+            return false;
     }
     return true;
 }
@@ -357,22 +382,23 @@ static bool clear_of_corners(const refinement *r, int32_t t, const double place[
 static jali_status improve(jali_context *ctx, refinement *r, int32_t t)
 {
     form f = form_of(r, t);
-    double size = mean_size(r, t), place[3];
+    double size = mean_size(r, t);
     bool sharp = too_sharp(r, &f);
-    int32_t at[2], blocked, p;
+    candidate c;
+    int32_t blocked, p;
     if (!sharp && !too_large(&f, size)) return JALI_OK;
-    choose_place(r, &f, size, at);
-    int32_t holder = walk(r->plane, t, at, &blocked);
+    choose_place(r, &f, size, c.at);
+    int32_t holder = walk(r->plane, t, c.at, &blocked);
     if (holder >= 0) {
-        place_in(r, holder, at, place);
-        blocked = near_border(r, holder, place);
-        if (!clear_of_corners(r, holder, place, MAX(r->least, 0.5 * f.length))) return JALI_OK;
+        if (!lift(r, &c)) return JALI_OK;
+        blocked = near_border(r, holder, &c);
+        if (!is_clear(r, holder, &c, MAX(r->least, 0.5 * f.length))) return JALI_OK;
     }
     jali_status status = JALI_OK;
     if (blocked != NONE)
         status = give_way(ctx, r, blocked, sharp, &p);
     else if (holder >= 0)
-        status = add_inside(ctx, r, holder, at, &p);
+        status = add_inside(ctx, r, holder, &c, &p);
     else
         return JALI_OK;
     if (status == JALI_OK && p >= 0) {
@@ -412,10 +438,32 @@ done:
     return status;
 }
 
+// Flip what the measure asks for, everywhere. Flips could go round in a ring where a surface bends within a
+// triangle: there is an end to them.
+static void flip_all(refinement *r)
+{
+    triangulation *plane = r->plane;
+    int64_t left = 8 * (int64_t)plane->triangle_count;
+    int32_t t;
+    for (t = 0; t < plane->triangle_count; t++)
+        if (r->inside[t]) wait_in(&r->waiting, t, 0);
+    while ((t = next_waiting(&r->waiting)) != NONE_WAITING)
+        for (int32_t s = 4 * t; s < 4 * t + 3; s++) {
+            if (left == 0 || !flips(r, s)) continue;
+            int32_t other = plane->beside[s] >> 2;
+            flip_side(plane, s);
+            left--;
+            wait_in(&r->waiting, t, 0);
+            wait_in(&r->waiting, other, 0);
+            break;
+        }
+}
+
 jali_status refine_triangles(jali_context *ctx, refinement *r)
 {
     jali_status status;
     int32_t t;
+    if (r->measure != BY_LATTICE) flip_all(r);
     TRY(split_borders(ctx, r));
     TRY(step(ctx, "mesh", 0.3));
     for (t = 0; t < r->plane->triangle_count; t++) put(r, t);

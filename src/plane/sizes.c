@@ -125,7 +125,7 @@ jali_status refine_sizes(jali_context *ctx, refinement *r, double across, double
     const triangulation *plane = r->plane;
     TRY(split_to_gaps(ctx, r, across * finest));
     TRY(step(ctx, "mesh", 0.2));
-    for (int32_t p = 0; p < plane->point_count; p++) r->size[p] = coarsest;
+    for (int32_t p = 0; p < plane->point_count; p++) r->size[p] = MIN(MAX(r->size[p], finest), coarsest);
     for (int32_t t = 0; t < plane->triangle_count; t++) {
         if (!r->inside[t]) continue;
         double size = MIN(MAX(width_at(r, t) / across, finest), coarsest);
