@@ -8,7 +8,7 @@
 #   make docs       renew what docs/cli.md quotes           make results    the tables of docs/results.md
 PACKAGES := cmake ninja-build gcc g++ pkg-config libpng-dev libjpeg62-turbo-dev libwebp-dev librsvg2-dev \
             libcairo2-dev libdeflate-dev libzip-dev libexpat1-dev libjansson-dev libcmocka-dev \
-            libmumps-seq-dev libmetis-dev libopenblas-dev
+            libmetis-dev libopenblas-dev
 FUZZ_PACKAGES     := clang libclang-rt-dev
 JUDGE_PACKAGES    := admesh prusa-slicer
 LINT_PACKAGES     := clang-format clang-tidy cppcheck

@@ -1,6 +1,9 @@
 // The door to the direct solver of structures: A x = b with A symmetric and positive definite. Internal.
 //
-// One thing behind it today: the sequential MUMPS (mumps.c) over an order of METIS (dissect.c).
+// Behind it: a multifrontal Cholesky factor (fronts.c) over an order of METIS (elimination.c). It took the
+// place of the sequential MUMPS: for a pierced plate of 1.1 million unknowns that one spent 12 us of CPU an
+// unknown from assembly to solution and 1.7 kB, this one 6.3 us and 1.3 kB, on any number of threads, and its
+// limits of time and memory, its cancelling and the place of a weak pivot are ours.
 #ifndef SPARSE_SOLVER_H
 #define SPARSE_SOLVER_H
 
@@ -8,11 +11,11 @@
 
 typedef struct solver solver;
 
-/// What the last factor cost.
+/// What a factor costs; known from the pattern.
 typedef struct solver_figures {
-    double flops;        // of the elimination
-    uint64_t entries;    // of the factor
-    uint64_t held_bytes; // by the solver: the factor, its workspace, the places of the matrix's entries
+    double flops;
+    int64_t entries; // of the factor, 8 bytes each
+    int32_t fronts;
 } solver_figures;
 
 /// Order and analyse a pattern; the values are not looked at.
@@ -23,7 +26,7 @@ typedef struct solver_figures {
 jali_status solver_open(jali_context *ctx, const block_matrix *a, solver **s);
 
 /// Factor the values that stand in the matrix now; may be called again when they have changed.
-///   out    weak_row   the unknown where elimination came to an end (JALI_NO_RESULT); -1: not known
+///   out    weak_row   the unknown where elimination came to an end (JALI_NO_RESULT), else -1
 ///   fails  JALI_NO_RESULT (not positive definite), JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
 ///   cost   of surfaces: O(n^1.5) time, O(n log n) memory
 jali_status solver_factor(jali_context *ctx, solver *s, int32_t *weak_row);
@@ -42,9 +45,5 @@ jali_status solver_inverse(jali_context *ctx, solver *s, int32_t row_count, cons
 solver_figures solver_cost(const solver *s);
 
 void solver_close(jali_context *ctx, solver *s);
-
-/// An order of elimination with little fill: METIS's nested dissection of the nodes, expanded to unknowns.
-///   out    position   [unknowns] counted from 1: when an unknown is eliminated
-jali_status dissect(jali_context *ctx, const block_matrix *a, int32_t *position);
 
 #endif

@@ -1,0 +1,274 @@
+// Solutions with a multifrontal factor, and entries of the inverse.
+//
+// Right sides stand side by side: x[unknown in the order of elimination][right side]. For BLAS, which counts
+// by columns, that is a matrix of `count` rows.
+//
+// Checked: tests/test_solver.c.
+#include "sparse/blas.h"
+#include "sparse/fronts.h"
+
+#include <stdlib.h>
+
+enum { SIDE_BY_SIDE = 32 }; // right sides that are solved at one time
+
+static const double ONE = 1, MINUS = -1, NONE = 0;
+static const int UNIT = 1;
+
+// What the rows below a front's pivots lose to `lost`, or what they are.
+static void spread(const elimination *e, int32_t f, int count, const double *lost, double *x)
+{
+    for (int64_t k = e->row[f]; k < e->row[f + 1]; k++) {
+        int32_t p = e->below[k], width = (e->start[p + 1] - e->start[p]) * count;
+        double *to = x + (size_t)e->start[p] * (size_t)count;
+        for (int32_t i = 0; i < width; i++) to[i] -= *lost++;
+    }
+}
+
+static void collect(const elimination *e, int32_t f, int count, const double *x, double *below)
+{
+    for (int64_t k = e->row[f]; k < e->row[f + 1]; k++) {
+        int32_t p = e->below[k];
+        size_t width = (size_t)(e->start[p + 1] - e->start[p]) * (size_t)count;
+        memcpy(below, x + (size_t)e->start[p] * (size_t)count, width * sizeof *below);
+        below += width;
+    }
+}
+
+// x = L11^-1 x, below = L21 x.
+static void forward(const front *d, int count, double *x, double *below)
+{
+    int lead = d->pivots + d->height;
+    if (count == 1) {
+        dtrsv_("L", "N", "N", &d->pivots, d->panel, &lead, x, &UNIT);
+        dgemv_("N", &d->height, &d->pivots, &ONE, d->panel + d->pivots, &lead, x, &UNIT, &NONE, below, &UNIT);
+        return;
+    }
+    dtrsm_("R", "L", "T", "N", &count, &d->pivots, &ONE, d->panel, &lead, x, &count);
+    dgemm_("N", "T", &count, &d->height, &d->pivots, &ONE, x, &count, d->panel + d->pivots, &lead, &NONE,
+           below, &count);
+}
+
+// x = L11^-T (x - L21^T below).
+static void backward(const front *d, int count, const double *below, double *x)
+{
+    int lead = d->pivots + d->height;
+    if (count == 1) {
+        dgemv_("T", &d->height, &d->pivots, &MINUS, d->panel + d->pivots, &lead, below, &UNIT, &ONE, x,
+               &UNIT);
+        dtrsv_("L", "T", "N", &d->pivots, d->panel, &lead, x, &UNIT);
+        return;
+    }
+    dgemm_("N", "N", &count, &d->pivots, &d->height, &MINUS, below, &count, d->panel + d->pivots, &lead, &ONE,
+           x, &count);
+    dtrsm_("R", "L", "N", "N", &count, &d->pivots, &ONE, d->panel, &lead, x, &count);
+}
+
+// Between the caller's columns and the order of elimination; `in`: towards it.
+static void carry(const solver *s, int32_t count, bool in, double *by_column, double *x)
+{
+    const elimination *e = &s->order;
+    size_t size = (size_t)unknowns_of(s->a);
+    for (int32_t p = 0; p < s->a->node_count; p++) {
+        int32_t from = s->a->first[e->node[p]];
+        for (int32_t i = e->start[p]; i < e->start[p + 1]; i++, from++)
+            for (int32_t k = 0; k < count; k++) {
+                double *outside = &by_column[(size_t)k * size + (size_t)from];
+                double *inside = &x[(size_t)i * (size_t)count + (size_t)k];
+                *(in ? inside : outside) = *(in ? outside : inside);
+            }
+    }
+}
+
+static void solve_together(const solver *s, int32_t count, double *x, double *below)
+{
+    const elimination *e = &s->order;
+    for (int32_t f = 0; f < e->front_count; f++) {
+        front d = front_of(s, f);
+        if (d.pivots == 0) continue;
+        forward(&d, count, x + (size_t)e->start[e->first[f]] * (size_t)count, below);
+        spread(e, f, count, below, x);
+    }
+    for (int32_t f = e->front_count; f-- > 0;) {
+        front d = front_of(s, f);
+        if (d.pivots == 0) continue;
+        collect(e, f, count, x, below);
+        backward(&d, count, below, x + (size_t)e->start[e->first[f]] * (size_t)count);
+    }
+}
+
+static int32_t tallest(const elimination *e)
+{
+    int32_t most = 0;
+    for (int32_t f = 0; f < e->front_count; f++) most = MAX(most, e->height[f]);
+    return most;
+}
+
+jali_status solver_solve(jali_context *ctx, solver *s, int32_t count, double *x)
+{
+    jali_status status = JALI_OK;
+    arena_mark mark = arena_here(ctx);
+    size_t size = (size_t)unknowns_of(s->a), together = (size_t)MIN(count, SIDE_BY_SIDE);
+    double *ordered, *below;
+    TRY(ARENA(ctx, ordered, size * together));
+    TRY(ARENA(ctx, below, (size_t)tallest(&s->order) * together));
+    for (int32_t i = 0; i < count; i += SIDE_BY_SIDE) {
+        int32_t some = MIN(SIDE_BY_SIDE, count - i);
+        TRY(step(ctx, "solve", (double)i / count));
+        carry(s, some, true, x + (size_t)i * size, ordered);
+        solve_together(s, some, ordered, below);
+        carry(s, some, false, x + (size_t)i * size, ordered);
+    }
+    TRY(step(ctx, "solve", 1));
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+// An unknown whose column of the inverse is asked for.
+typedef struct chosen {
+    int32_t eliminated; // its place in the order of elimination
+    int32_t unknown;
+} chosen;
+
+static int by_place(const void *a, const void *b)
+{
+    int32_t x = ((const chosen *)a)->eliminated, y = ((const chosen *)b)->eliminated;
+    return (x > y) - (x < y);
+}
+
+static int by_unknown(const void *a, const void *b)
+{
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+// Rows and columns that are asked for, each once, in the order of elimination.
+static int32_t choose(const solver *s, int32_t count, int32_t *unknown, chosen *list)
+{
+    int32_t kept = 0, node = 0;
+    qsort(unknown, (size_t)count, sizeof *unknown, by_unknown);
+    for (int32_t i = 0; i < count; i++) {
+        if (i > 0 && unknown[i] == unknown[i - 1]) continue;
+        while (s->a->first[node + 1] <= unknown[i]) node++;
+        int32_t place = s->order.start[s->order.position[node]] + unknown[i] - s->a->first[node];
+        list[kept++] = (chosen){place, unknown[i]};
+    }
+    qsort(list, (size_t)kept, sizeof *list, by_place);
+    return kept;
+}
+
+// W = L^-1 P goes up the forest front by front. A subtree is a run of the order: the columns of P that have
+// begun in it are a run of the list, [from, to), and the others are zero there. What F = W^T W gets from a
+// front is its pivots' part.
+typedef struct climb {
+    const solver *s;
+    const chosen *list;
+    int32_t count;
+    double *f;          // [count][count] by columns, lower half
+    double **left;      // [front_count] what a front leaves for its parent: [height][to - from]
+    int32_t (*part)[2]; // [front_count] from, to
+    row_run *run;
+} climb;
+
+static jali_status climb_front(jali_context *ctx, climb *w, int32_t f)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    const elimination *e = &w->s->order;
+    front d = front_of(w->s, f);
+    int32_t from = w->part[f][0], count = w->part[f][1] - from, base = e->start[e->first[f]];
+    size_t rows = (size_t)d.pivots + (size_t)d.height, width = (size_t)count;
+    double *x;
+    TRY(ARENA(ctx, x, rows * width));
+    TRY(ALLOCATE(ctx, w->left[f], (size_t)d.height * width));
+    memset(x, 0, rows * width * sizeof *x);
+    for (int32_t c = from; c < from + count; c++)
+        if (w->list[c].eliminated >= base)
+            x[(size_t)(w->list[c].eliminated - base) * width + (size_t)(c - from)] = 1;
+    for (int32_t c = e->child[f]; c >= 0; c = e->next[c]) {
+        if (!w->left[c]) continue;
+        int32_t runs = match_rows(e, c, f, w->run), some = w->part[c][1] - w->part[c][0];
+        const double *value = w->left[c];
+        for (int32_t r = 0; r < runs; r++)
+            for (int32_t i = 0; i < w->run[r].count; i++) {
+                double *to = x + (size_t)(w->run[r].to + i) * width + (w->part[c][0] - from);
+                for (int32_t k = 0; k < some; k++) to[k] -= *value++;
+            }
+        release(ctx, w->left[c]);
+        w->left[c] = NULL;
+    }
+    forward(&d, count, x, w->left[f]);
+    // forward gives L21 x: what the children handed up is taken from it.
+    for (size_t i = 0; i < (size_t)d.height * width; i++) w->left[f][i] -= x[(size_t)d.pivots * width + i];
+    dsyrk_("L", "N", &count, &d.pivots, &ONE, x, &count, &ONE, w->f + (size_t)from * (size_t)w->count + from,
+           &w->count);
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+static jali_status climb_all(jali_context *ctx, climb *w)
+{
+    jali_status status = JALI_OK;
+    const elimination *e = &w->s->order;
+    int32_t begun = 0;
+    for (int32_t f = 0; f < e->front_count; f++) {
+        int32_t end = e->start[e->first[f + 1]];
+        w->part[f][0] = begun;
+        while (begun < w->count && w->list[begun].eliminated < end) begun++;
+        if (e->child[f] >= 0) w->part[f][0] = w->part[e->child[f]][0];
+        w->part[f][1] = begun;
+        if (w->part[f][0] < begun) TRY(climb_front(ctx, w, f));
+    }
+done:
+    for (int32_t f = 0; f < e->front_count; f++) release(ctx, w->left[f]);
+    return status;
+}
+
+// Where in the list each of the wanted unknowns is.
+static void find_places(const chosen *list, int32_t count, int32_t wanted_count, const int32_t *wanted,
+                        int32_t *place)
+{
+    for (int32_t i = 0; i < wanted_count; i++)
+        for (int32_t k = 0; k < count; k++)
+            if (list[k].unknown == wanted[i]) place[i] = k;
+}
+
+jali_status solver_inverse(jali_context *ctx, solver *s, int32_t row_count, const int32_t *row,
+                           int32_t column_count, const int32_t *column, double *f)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    const elimination *e = &s->order;
+    size_t all = (size_t)row_count + (size_t)column_count;
+    int32_t *unknown, *at_row, *at_column;
+    chosen *list;
+    climb w = {.s = s};
+    TRY(step(ctx, "solve", 0));
+    TRY(ARENA(ctx, unknown, all));
+    TRY(ARENA(ctx, list, all));
+    TRY(ARENA(ctx, at_row, row_count));
+    TRY(ARENA(ctx, at_column, column_count));
+    memcpy(unknown, row, (size_t)row_count * sizeof *row);
+    memcpy(unknown + row_count, column, (size_t)column_count * sizeof *column);
+    w.count = choose(s, (int32_t)all, unknown, list);
+    w.list = list;
+    TRY(ARENA(ctx, w.f, (size_t)w.count * (size_t)w.count));
+    TRY(ARENA(ctx, w.left, e->front_count));
+    TRY(ARENA(ctx, w.part, e->front_count));
+    TRY(ARENA(ctx, w.run, tallest(e)));
+    memset(w.f, 0, (size_t)w.count * (size_t)w.count * sizeof *w.f);
+    memset(w.left, 0, (size_t)e->front_count * sizeof *w.left);
+    TRY(climb_all(ctx, &w));
+    find_places(list, w.count, row_count, row, at_row);
+    find_places(list, w.count, column_count, column, at_column);
+    for (int32_t c = 0; c < column_count; c++)
+        for (int32_t r = 0; r < row_count; r++) {
+            size_t low = (size_t)MAX(at_row[r], at_column[c]), high = (size_t)MIN(at_row[r], at_column[c]);
+            f[(size_t)c * (size_t)row_count + (size_t)r] = w.f[high * (size_t)w.count + low];
+        }
+    TRY(step(ctx, "solve", 1));
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
