@@ -14,8 +14,9 @@ int main(void)
     printf("|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < PUBLISHED_COUNT; i++) {
         const published *p = &PUBLISHED[i];
-        double value = p->value(with, p->n, facet_stiffness), other = p->value(with, p->n, mitc_stiffness);
-        double half = p->value(with, (p->n + 1) / 2, facet_stiffness);
+        double value = p->value(with, p->n, facet_stiffness, p->which),
+               other = p->value(with, p->n, mitc_stiffness, p->which);
+        double half = p->value(with, (p->n + 1) / 2, facet_stiffness, p->which);
         printf("| %s | %.6g | %s | %s | %.6g | %.4f | %+.1f .. %+.1f %% | %.4f | %.4f |%s\n", p->name,
                p->reference, p->source, p->mesh, value, value / p->reference, p->low, p->high,
                other / p->reference, half / p->reference,
