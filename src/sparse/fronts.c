@@ -14,7 +14,7 @@
 #include <sys/mman.h>
 
 // Subtrees a batch: what they leave over waits in memory for their parents.
-enum { BATCH = 8 };
+enum { BATCH = 8, SPARES = 64 };
 
 // A pivot this small against its diagonal in A is rounding alone.
 static const double LEAST_PIVOT = 1e-15;
@@ -42,6 +42,20 @@ void ask_for_large_pages(double *block, size_t count)
     uintptr_t end = (uintptr_t)(block + count) / page * page;
     if (end > begin) madvise((void *)begin, end - begin, MADV_HUGEPAGE);
 }
+
+// A block of memory that no front uses at the moment.
+typedef struct spare_block {
+    size_t size;
+    double *block;
+} spare_block;
+
+// All that a factorisation needs beside the factor.
+typedef struct workshop {
+    batch batch;
+    desk above; // for the fronts above the subtrees; no stack
+    spare_block spare[SPARES];
+    int spare_count;
+} workshop;
 
 static size_t square(int32_t n)
 {
@@ -197,55 +211,90 @@ static size_t stack_size(const solver *s, int32_t root)
     return most;
 }
 
-static int64_t most_rows(const solver *s)
-{
-    int64_t most = 0;
-    for (int32_t f = 0; f < s->order.front_count; f++)
-        most = MAX(most, s->order.row[f + 1] - s->order.row[f]);
-    return most;
-}
-
 static jali_status lay_desk(jali_context *ctx, const solver *s, size_t stack, desk *w)
 {
     jali_status status;
     *w = (desk){0};
     TRY(ARENA(ctx, w->stack, stack));
-    TRY(ARENA(ctx, w->offset, most_rows(s)));
-    TRY(ARENA(ctx, w->run, most_rows(s)));
+    ask_for_large_pages(w->stack, stack);
+    TRY(ARENA(ctx, w->offset, s->most_rows));
+    TRY(ARENA(ctx, w->run, s->most_rows));
 done:
     return status;
 }
 
-static jali_status run_batch(jali_context *ctx, solver *s, int32_t first, int32_t count, int32_t *weak)
+// Desks for the subtrees of a batch, which all batches use, and for the fronts above them.
+static jali_status lay_desks(jali_context *ctx, solver *s, workshop *w)
+{
+    jali_status status;
+    size_t stack = 0;
+    for (int32_t i = 0; i < s->subtree_count; i++) stack = MAX(stack, stack_size(s, s->subtree[i]));
+    for (int32_t i = 0; i < MIN(BATCH, s->subtree_count); i++)
+        TRY(lay_desk(ctx, s, stack, &w->batch.desk[i]));
+    TRY(lay_desk(ctx, s, 0, &w->above));
+done:
+    return status;
+}
+
+// Blocks come in few sizes, so that one that was given back fits again.
+static size_t block_size(int32_t height)
+{
+    size_t count = square(height), unit = 1;
+    while (count / unit >= 8) unit *= 2;
+    return (count + unit - 1) / unit * unit;
+}
+
+// Memory for what a front leaves over: to touch new memory costs more than the sums that go there.
+static jali_status take_block(jali_context *ctx, workshop *w, int32_t height, double **block)
+{
+    size_t size = block_size(height);
+    for (int i = w->spare_count; i-- > 0;) {
+        if (w->spare[i].size != size) continue;
+        *block = w->spare[i].block;
+        w->spare[i] = w->spare[--w->spare_count];
+        return JALI_OK;
+    }
+    jali_status status = ALLOCATE(ctx, *block, size);
+    if (status == JALI_OK) ask_for_large_pages(*block, size);
+    return status;
+}
+
+static void give_block(jali_context *ctx, workshop *w, int32_t height, double *block)
+{
+    if (block && w->spare_count < SPARES)
+        w->spare[w->spare_count++] = (spare_block){block_size(height), block};
+    else
+        release(ctx, block);
+}
+
+static jali_status run_batch(jali_context *ctx, workshop *w, int32_t first, int32_t count, int32_t *weak)
 {
     jali_status status = JALI_OK;
-    arena_mark mark = arena_here(ctx);
-    batch b = {.s = s, .root = s->subtree + first};
+    batch *b = &w->batch;
+    solver *s = b->s;
+    b->root = s->subtree + first;
     for (int32_t i = 0; i < count; i++) {
-        int32_t root = b.root[i];
-        b.weak[i] = -1;
-        TRY(lay_desk(ctx, s, stack_size(s, root), &b.desk[i]));
-        TRY(ALLOCATE(ctx, s->left[root], square(s->order.height[root])));
-        ask_for_large_pages(s->left[root], square(s->order.height[root]));
-        b.result[i] = s->left[root];
+        b->weak[i] = -1;
+        b->desk[i].used = 0;
+        TRY(take_block(ctx, w, s->order.height[b->root[i]], &s->left[b->root[i]]));
+        b->result[i] = s->left[b->root[i]];
     }
-    parallel(ctx, count, eliminate_subtree, &b);
-    for (int32_t i = 0; i < count && *weak < 0; i++) *weak = b.weak[i];
+    parallel(ctx, count, eliminate_subtree, b);
+    for (int32_t i = 0; i < count && *weak < 0; i++) *weak = b->weak[i];
 done:
-    arena_rewind(ctx, mark);
     return status;
 }
 
-static jali_status run_front(jali_context *ctx, solver *s, int32_t f, const desk *w, int32_t *weak)
+static jali_status run_front(jali_context *ctx, workshop *w, int32_t f, int32_t *weak)
 {
+    solver *s = w->batch.s;
     front d = front_of(s, f);
-    jali_status status = ALLOCATE(ctx, s->left[f], square(d.height));
+    jali_status status = take_block(ctx, w, d.height, &s->left[f]);
     if (status != JALI_OK) return status;
-    ask_for_large_pages(s->left[f], square(d.height));
     d.rest = s->left[f];
-    *weak = eliminate_front(ctx, s, f, &d, w);
+    *weak = eliminate_front(ctx, s, f, &d, &w->above);
     for (int32_t c = s->order.child[f]; c >= 0; c = s->order.next[c]) {
-        release(ctx, s->left[c]);
+        give_block(ctx, w, s->order.height[c], s->left[c]);
         s->left[c] = NULL;
     }
     return JALI_OK;
@@ -259,43 +308,61 @@ static int32_t unknown_of(const solver *s, int32_t eliminated)
     return s->a->first[s->order.node[p]] + eliminated - s->order.start[p];
 }
 
-jali_status factor_fronts(jali_context *ctx, solver *s, int32_t *weak_row)
+// Fronts in their order; those of small subtrees a batch ahead.
+static jali_status run_fronts(jali_context *ctx, workshop *w, int32_t *weak)
 {
     jali_status status = JALI_OK;
-    arena_mark mark = arena_here(ctx);
+    const solver *s = w->batch.s;
     const elimination *e = &s->order;
-    int32_t subtree = 0, started = 0, weak = -1;
-    desk w;
-    *weak_row = -1;
-    memset(s->left, 0, (size_t)e->front_count * sizeof *s->left);
-    TRY(lay_desk(ctx, s, 0, &w));
-    for (int32_t f = 0; f < e->front_count && weak < 0;) {
+    int32_t subtree = 0, started = 0;
+    for (int32_t f = 0; f < e->front_count && *weak < 0;) {
         TRY(step(ctx, "factor", (double)e->panel[f] / (double)(e->panel[e->front_count] + 1)));
         if (subtree < s->subtree_count && s->begin[s->subtree[subtree]] == f) {
             if (subtree == started) {
                 started = MIN(started + BATCH, s->subtree_count);
-                TRY(run_batch(ctx, s, subtree, started - subtree, &weak));
+                TRY(run_batch(ctx, w, subtree, started - subtree, weak));
             }
             f = s->subtree[subtree++] + 1;
         } else {
-            TRY(run_front(ctx, s, f++, &w, &weak));
+            TRY(run_front(ctx, w, f++, weak));
         }
     }
-    if (weak < 0) {
-        TRY(step(ctx, "factor", 1));
+done:
+    return status;
+}
+
+// Roots of subtrees and the fronts above them have blocks of their own; the pointers of others lead into
+// desks.
+static void clear_away(jali_context *ctx, workshop *w)
+{
+    solver *s = w->batch.s;
+    for (int32_t i = 0, f = 0; f < s->order.front_count; f++) {
+        bool inside = i < s->subtree_count && f >= s->begin[s->subtree[i]];
+        if (!inside || f == s->subtree[i]) release(ctx, s->left[f]);
+        i += inside && f == s->subtree[i];
+    }
+    for (int i = 0; i < w->spare_count; i++) release(ctx, w->spare[i].block);
+}
+
+jali_status factor_fronts(jali_context *ctx, solver *s, int32_t *weak_row)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    int32_t weak = -1;
+    workshop w = {.batch.s = s};
+    *weak_row = -1;
+    memset(s->left, 0, (size_t)s->order.front_count * sizeof *s->left);
+    TRY(lay_desks(ctx, s, &w));
+    TRY(run_fronts(ctx, &w, &weak));
+    if (weak >= 0) {
+        *weak_row = unknown_of(s, weak);
+        status = fail(ctx, JALI_NO_RESULT, "a matrix of %d unknowns is not positive definite at unknown %d",
+                      unknowns_of(s->a), *weak_row);
         goto done;
     }
-    *weak_row = unknown_of(s, weak);
-    status = fail(ctx, JALI_NO_RESULT, "a matrix of %d unknowns is not positive definite at unknown %d",
-                  unknowns_of(s->a), *weak_row);
+    TRY(step(ctx, "factor", 1));
 done:
-    // Roots of subtrees and the fronts above them have memory of their own; NULL when it is taken.
-    for (int32_t i = 0, f = 0; f < e->front_count; f++) {
-        bool inside = i < s->subtree_count && f >= s->begin[s->subtree[i]];
-        if (inside && f < s->subtree[i]) continue;
-        if (inside) i++;
-        release(ctx, s->left[f]);
-    }
+    clear_away(ctx, &w);
     arena_rewind(ctx, mark);
     return status;
 }

@@ -14,6 +14,7 @@ struct solver {
     int32_t *begin;     // [front_count] the first front of a front's subtree
     int32_t *subtree;   // [subtree_count] roots of the subtrees that are small enough for one thread
     int32_t subtree_count;
+    int32_t most_rows; // of a front, in nodes
     double flops;
     double *factor; // [order.panel[front_count]] the fronts' panels
     double **left;  // [front_count] what a front left over for its parent; NULL once it is taken

@@ -85,6 +85,8 @@ jali_status solver_open(jali_context *ctx, const block_matrix *a, solver **out)
     TRY(ALLOCATE(ctx, s->subtree, s->order.front_count));
     TRY(ALLOCATE(ctx, s->left, s->order.front_count));
     choose_subtrees(s);
+    for (int32_t f = 0; f < s->order.front_count; f++)
+        s->most_rows = MAX(s->most_rows, (int32_t)(s->order.row[f + 1] - s->order.row[f]));
     s->flops = count_flops(&s->order);
     TRY(step(ctx, "order", 1));
     *out = s;
