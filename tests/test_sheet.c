@@ -418,7 +418,7 @@ static jali_status mesh_surface_once(jali_context *limited, void *data)
 {
     const laid *on = data;
     jali_sheet sheet;
-    jali_sheet_options opt = {.phi_s_mm = 1, .across = 1, .whole = true};
+    jali_sheet_options opt = {.phi_s_mm = 9, .across = 1, .whole = true};
     jali_status status =
         jali_sheet_shell(limited, &on->contours, &on->chart, &on->patch, &on->shell, &opt, &sheet);
     jali_sheet_free(limited, &sheet);
@@ -427,7 +427,7 @@ static jali_status mesh_surface_once(jali_context *limited, void *data)
 
 TEST(refused_memory_on_a_surface_is_said_and_nothing_leaks)
 {
-    laid on = lay("cylinder:r=20,h=60,tolerance=0.5", JALI_PLACE_WRAP, 30);
+    laid on = lay("cylinder:r=20,h=30,facets=16,tolerance=5", JALI_PLACE_WRAP, 25);
     refuse_each_allocation(mesh_surface_once, &on);
     laid_free(&on);
 }
