@@ -102,6 +102,18 @@ jali_status triangulate_drawing(jali_context *ctx, const drawing *d, int32_t cro
                         : insert_uncrossed(ctx, d, unit_mm / d->scale, plane, home);
 }
 
+jali_status label_lines(jali_context *ctx, const triangulation *plane, uint8_t kinds, double unit_mm,
+                        uint8_t *tone)
+{
+    jali_status status = label_tones(ctx, plane, kinds, tone);
+    for (int32_t s = 0; s < 4 * plane->triangle_count && status == JALI_OK; s++) {
+        if ((s & 3) == 3 || is_ghost(plane, s >> 2)) continue;
+        bool changes = tone[s >> 2] != tone[plane->beside[s] >> 2], line = (plane->kind[s] & kinds) != 0;
+        if (changes != line) status = report_contact(ctx, plane->point[plane->corner[next_side(s)]], unit_mm);
+    }
+    return status;
+}
+
 // --- The sheet
 
 typedef struct gathering {

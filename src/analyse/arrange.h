@@ -39,6 +39,12 @@ jali_status add_polygon(jali_context *ctx, drawing *d, const int32_t (*point)[2]
 jali_status triangulate_drawing(jali_context *ctx, const drawing *d, int32_t crossing, double unit_mm,
                                 triangulation *plane, int32_t *home);
 
+/// label_tones, checked: lines that lie on each other leave no tone that changes at each of them.
+///   in     unit_mm   of the plane
+///   fails  JALI_BAD_INPUT (where in mm), JALI_NO_MEMORY
+jali_status label_lines(jali_context *ctx, const triangulation *plane, uint8_t kinds, double unit_mm,
+                        uint8_t *tone);
+
 /// The picture's rectangle, units of the chart.
 typedef struct picture_window {
     int32_t low[2], high[2];

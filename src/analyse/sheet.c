@@ -120,13 +120,14 @@ static jali_status label_inside(jali_context *ctx, plate_sheet *p)
     arena_mark mark = arena_here(ctx);
     uint8_t *in_window;
     int64_t count = 0;
+    double unit_mm = p->chart->unit_mm / p->drawing.scale;
     int32_t triangles = p->plane.triangle_count;
     TRY(ALLOCATE(ctx, p->fine.inside, triangles + 1));
     p->fine.inside_capacity = (size_t)triangles + 1;
-    TRY(label_tones(ctx, &p->plane, EDGE_CONTOUR, p->fine.inside));
+    TRY(label_lines(ctx, &p->plane, EDGE_CONTOUR, unit_mm, p->fine.inside));
     if (p->clipped) {
         TRY(ARENA(ctx, in_window, triangles + 1));
-        TRY(label_tones(ctx, &p->plane, EDGE_WINDOW, in_window));
+        TRY(label_lines(ctx, &p->plane, EDGE_WINDOW, unit_mm, in_window));
         for (int32_t t = 0; t < triangles; t++) p->fine.inside[t] &= in_window[t];
     }
     for (int32_t t = 0; t < triangles; t++) count += p->fine.inside[t];

@@ -137,14 +137,15 @@ static jali_status label_inside(jali_context *ctx, shell_sheet *s)
     arena_mark mark = arena_here(ctx);
     int32_t triangles = s->plane.triangle_count;
     int64_t count = 0;
+    double unit_mm = s->chart->unit_mm / s->drawing.scale;
     uint8_t *in_void, *in_window;
     TRY(ALLOCATE(ctx, s->fine.inside, triangles + 1));
     s->fine.inside_capacity = (size_t)triangles + 1;
     TRY(ARENA(ctx, in_void, triangles + 1));
     TRY(ARENA(ctx, in_window, triangles + 1));
-    TRY(label_tones(ctx, &s->plane, EDGE_CREASE, s->fine.inside));
-    TRY(label_tones(ctx, &s->plane, EDGE_CONTOUR, in_void));
-    TRY(label_tones(ctx, &s->plane, EDGE_WINDOW, in_window));
+    TRY(label_lines(ctx, &s->plane, EDGE_CREASE, unit_mm, s->fine.inside));
+    TRY(label_lines(ctx, &s->plane, EDGE_CONTOUR, unit_mm, in_void));
+    TRY(label_lines(ctx, &s->plane, EDGE_WINDOW, unit_mm, in_window));
     for (int32_t t = 0; t < triangles; t++) {
         s->fine.inside[t] &= !in_void[t] && (in_window[t] || s->opt.whole);
         count += s->fine.inside[t];

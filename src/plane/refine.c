@@ -25,7 +25,7 @@ static const double RADIUS_A_SIZE = 0.75;
 // Circumradius against shortest side: 1 / (2 sin 25 degrees).
 static const double RADIUS_A_SIDE = 1.18;
 // The sides of a new triangle against its base.
-static const double LEAST_LEG = 0.8, LARGEST_LEG = 1.5;
+static const double LEAST_LEG = 0.8, LARGEST_LEG = 2;
 // A border edge is too near to a point when it is seen from there under an angle with a smaller cosine.
 static const double TOO_NEAR_COSINE = -0.25;
 // A border edge is split for the sake of size only when it is so much longer than the size.
@@ -76,6 +76,11 @@ jali_status refinement_begin(jali_context *ctx, refinement *r, int32_t *astray)
 
 // --- Lengths and forms
 
+static const spot *spot_of(const refinement *r, int32_t p)
+{
+    return r->spot ? &r->spot[p] : NULL;
+}
+
 static double squared_gap(const refinement *r, const int32_t from[2], const spot *from_spot,
                           const int32_t to[2], const spot *to_spot)
 {
@@ -94,8 +99,7 @@ static double squared_gap(const refinement *r, const int32_t from[2], const spot
 
 double squared_length(const refinement *r, int32_t a, int32_t b)
 {
-    return squared_gap(r, r->plane->point[a], r->spot + (r->spot ? a : 0), r->plane->point[b],
-                       r->spot + (r->spot ? b : 0));
+    return squared_gap(r, r->plane->point[a], spot_of(r, a), r->plane->point[b], spot_of(r, b));
 }
 
 form form_of(const refinement *r, int32_t t)
@@ -287,7 +291,7 @@ static int32_t walk(const triangulation *plane, int32_t t, const int32_t at[2], 
 
 static double squared_to(const refinement *r, const candidate *c, int32_t p)
 {
-    return squared_gap(r, c->at, &c->spot, r->plane->point[p], r->spot + (r->spot ? p : 0));
+    return squared_gap(r, c->at, &c->spot, r->plane->point[p], spot_of(r, p));
 }
 
 // Side s is constrained and seen from the place under a wide angle.

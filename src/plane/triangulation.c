@@ -243,6 +243,7 @@ jali_status insert_points(jali_context *ctx, triangulation *plane, const int32_t
     jali_status status;
     arena_mark mark = arena_here(ctx);
     int32_t first = plane->point_count, *order;
+    if (count == 0) return JALI_OK;
     if ((int64_t)first + count > POINT_LIMIT)
         return fail(ctx, JALI_LIMIT, "%lld points are more than the %d a triangulation holds",
                     (long long)first + count, POINT_LIMIT);
@@ -253,14 +254,14 @@ jali_status insert_points(jali_context *ctx, triangulation *plane, const int32_t
     if (plane->triangle_count == 0) first = 0; // all on one line so far: begin again
     int32_t end = plane->point_count + count;
     TRY(reserve_points(ctx, plane, end));
-    if (count > 0) memcpy(plane->point + plane->point_count, point, (size_t)count * sizeof *point);
+    memcpy(plane->point + plane->point_count, point, (size_t)count * sizeof *point);
     plane->point_count = end;
     for (int32_t i = first; i < end; i++) plane->twin[i] = i;
     TRY(ARENA(ctx, order, end - first));
     TRY(insertion_order(ctx, (const int32_t(*)[2])plane->point + first, end - first, order));
     for (int32_t i = first; i < end; i++) order[i - first] += first;
     bool begun = plane->triangle_count == 0;
-    if (end == first || (begun && !begin(plane, order, end))) goto done;
+    if (begun && !begin(plane, order, end)) goto done;
     for (int32_t i = 0; i < end - first; i++) {
         if (i % POINTS_A_STEP == 0) TRY(step(ctx, "triangulate", (double)i / (end - first)));
         insert_point(plane, order[i]);
