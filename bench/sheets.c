@@ -44,7 +44,7 @@ static void write_svg(const char *path, const jali_sheet *sheet)
     for (int32_t t = 0; t < sheet->triangle_count; t++) {
         for (int k = 0; k < 3; k++) {
             const double *at = sheet->node[sheet->triangle[t][k]];
-            fprintf(file, "%c%.4g %.4g", k ? 'L' : 'M', at[0], -at[1]);
+            fprintf(file, "%c%.7g %.7g", k ? 'L' : 'M', at[0], -at[1]);
         }
         fprintf(file, "Z\n");
     }

@@ -6,6 +6,8 @@
 #include "plane/exact.h"
 #include "plane/snap.h"
 
+#include <math.h>
+
 void drawing_free(jali_context *ctx, drawing *d)
 {
     release(ctx, d->point);
@@ -20,17 +22,35 @@ int32_t finest_scale(int32_t most)
     return scale;
 }
 
+static bool are_close(const drawing *d, const int32_t a[2], const int32_t b[2])
+{
+    return hypot((double)b[0] - a[0], (double)b[1] - a[1]) < d->scale * d->closest;
+}
+
+// Store a polygon's points from `to` on, those close to the one before left out; returns how many were.
+static int32_t keep_points(const drawing *d, const int32_t (*point)[2], int32_t count, bool all,
+                           int32_t (*to)[2])
+{
+    int32_t kept = 0;
+    for (int32_t i = 0; i < count; i++) {
+        for (int k = 0; k < 2; k++) to[kept][k] = d->scale * point[i][k];
+        if (all || kept == 0 || !are_close(d, to[kept - 1], to[kept])) kept++;
+    }
+    while (!all && kept > 3 && are_close(d, to[kept - 1], to[0])) kept--;
+    return kept;
+}
+
 jali_status add_polygon(jali_context *ctx, drawing *d, const int32_t (*point)[2], int32_t count, uint8_t kind)
 {
     jali_status status;
     int32_t first = d->point_count;
     TRY(GROW(ctx, d->point, d->point_capacity, (size_t)first + (size_t)count));
     TRY(GROW(ctx, d->line, d->line_capacity, (size_t)d->line_count + (size_t)count));
-    for (int32_t i = 0; i < count; i++) {
-        for (int k = 0; k < 2; k++) d->point[first + i][k] = d->scale * point[i][k];
-        d->line[d->line_count++] = (line){first + i, first + (i + 1) % count, kind};
-    }
-    d->point_count += count;
+    int32_t kept = keep_points(d, point, count, false, d->point + first);
+    if (kept < 3) kept = keep_points(d, point, count, true, d->point + first);
+    for (int32_t i = 0; i < kept; i++)
+        d->line[d->line_count++] = (line){first + i, first + (i + 1) % kept, kind};
+    d->point_count += kept;
 done:
     return status;
 }
@@ -108,8 +128,9 @@ jali_status label_lines(jali_context *ctx, const triangulation *plane, uint8_t k
     jali_status status = label_tones(ctx, plane, kinds, tone);
     for (int32_t s = 0; s < 4 * plane->triangle_count && status == JALI_OK; s++) {
         if ((s & 3) == 3 || is_ghost(plane, s >> 2)) continue;
-        bool changes = tone[s >> 2] != tone[plane->beside[s] >> 2], line = (plane->kind[s] & kinds) != 0;
-        if (changes != line) status = report_contact(ctx, plane->point[plane->corner[next_side(s)]], unit_mm);
+        bool changes = tone[s >> 2] != tone[plane->beside[s] >> 2], drawn = (plane->kind[s] & kinds) != 0;
+        if (changes != drawn)
+            status = report_contact(ctx, plane->point[plane->corner[next_side(s)]], unit_mm);
     }
     return status;
 }

@@ -15,6 +15,7 @@ typedef struct line {
 /// their shape. {0} with a scale is ready.
 typedef struct drawing {
     int32_t scale, point_count, line_count;
+    double closest; // points of a polygon nearer than that to the one before are dropped; units of the chart
     int32_t (*point)[2]; // finer units
     line *line;
     size_t point_capacity, line_capacity;
@@ -61,6 +62,7 @@ typedef struct sheet_lengths {
 } sheet_lengths;
 
 extern const double SHEET_GROWTH; // of the size over a length
+extern const double SHEET_LEAST;  // distance of nodes as a share of the finest size
 
 void set_lengths(refinement *r, const jali_sheet_options *opt, double extent_mm, double unit_mm,
                  sheet_lengths *length);

@@ -182,24 +182,40 @@ void set_lengths(refinement *r, const jali_sheet_options *opt, double extent_mm,
     r->least = SHEET_LEAST * length->finest;
 }
 
+// Contours with points nearer than elements may be lose some; where edges would then meet, none.
+static jali_status arrange_plate(jali_context *ctx, plate_sheet *p, double closest)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    int32_t *home;
+    p->drawing = (drawing){.closest = closest};
+    TRY(draw_plate_lines(ctx, p));
+    TRY(ARENA(ctx, home, p->drawing.point_count + 1));
+    TRY(triangulate_drawing(ctx, &p->drawing, p->clipped ? 4 : 0, p->chart->unit_mm, &p->plane, home));
+    TRY(label_inside(ctx, p));
+done:
+    arena_rewind(ctx, mark);
+    if (status == JALI_OK) return status;
+    refinement_free(ctx, &p->fine);
+    triangulation_free(ctx, &p->plane);
+    drawing_free(ctx, &p->drawing);
+    return status == JALI_BAD_INPUT && closest > 0 ? arrange_plate(ctx, p, 0) : status;
+}
+
 jali_status jali_sheet_plate(jali_context *ctx, const jali_contours *plate, const jali_chart *chart,
                              double thickness_mm, const jali_sheet_options *given, jali_sheet *sheet)
 {
     jali_status status;
-    arena_mark mark = arena_here(ctx);
     jali_sheet_options opt = given ? *given : jali_sheet_defaults();
     plate_sheet p = {plate, chart, thickness_mm, window_of(chart), !opt.whole && chart->outside_solid,
                      {0},   {0},   {0}};
     sheet_lengths length;
-    int32_t *home, astray;
+    int32_t astray;
     *sheet = (jali_sheet){.flat = true};
     TRY(step(ctx, "mesh", 0));
     TRY(check_sheet_options(ctx, &opt));
     TRY(check_plate(ctx, &p));
-    TRY(draw_plate_lines(ctx, &p));
-    TRY(ARENA(ctx, home, p.drawing.point_count + 1));
-    TRY(triangulate_drawing(ctx, &p.drawing, p.clipped ? 4 : 0, chart->unit_mm, &p.plane, home));
-    TRY(label_inside(ctx, &p));
+    TRY(arrange_plate(ctx, &p, SHEET_LEAST * opt.phi_s_mm / opt.across / chart->unit_mm));
     p.fine.plane = &p.plane;
     double extent =
         MAX(p.window.high[0] - p.window.low[0], p.window.high[1] - p.window.low[1]) * chart->unit_mm;
@@ -214,7 +230,6 @@ done:
     refinement_free(ctx, &p.fine);
     triangulation_free(ctx, &p.plane);
     drawing_free(ctx, &p.drawing);
-    arena_rewind(ctx, mark);
     if (status != JALI_OK) jali_sheet_free(ctx, sheet);
     return status;
 }

@@ -221,6 +221,26 @@ done:
     return status;
 }
 
+// As for plates.
+static jali_status arrange_patch(jali_context *ctx, shell_sheet *s, double closest)
+{
+    jali_status status;
+    int32_t crossing;
+    s->drawing = (drawing){.closest = closest};
+    TRY(draw_shell_lines(ctx, s, &crossing));
+    TRY(ALLOCATE(ctx, s->home, s->drawing.point_count + 1));
+    TRY(triangulate_drawing(ctx, &s->drawing, crossing, s->chart->unit_mm, &s->plane, s->home));
+    TRY(label_inside(ctx, s));
+done:
+    if (status == JALI_OK) return status;
+    refinement_free(ctx, &s->fine);
+    triangulation_free(ctx, &s->plane);
+    drawing_free(ctx, &s->drawing);
+    release(ctx, s->home);
+    s->home = NULL;
+    return status == JALI_BAD_INPUT && closest > 0 ? arrange_patch(ctx, s, 0) : status;
+}
+
 jali_status jali_sheet_shell(jali_context *ctx, const jali_contours *picture, const jali_chart *chart,
                              const jali_patch *patch, const jali_shell *shell,
                              const jali_sheet_options *given, jali_sheet *sheet)
@@ -228,7 +248,6 @@ jali_status jali_sheet_shell(jali_context *ctx, const jali_contours *picture, co
     jali_status status;
     shell_sheet s = {.picture = picture, .chart = chart, .patch = patch, .shell = shell};
     const jali_mesh *outer = &shell->outer.mesh;
-    int32_t crossing;
     s.opt = given ? *given : jali_sheet_defaults();
     *sheet = (jali_sheet){0};
     TRY(step(ctx, "mesh", 0));
@@ -238,10 +257,8 @@ jali_status jali_sheet_shell(jali_context *ctx, const jali_contours *picture, co
     TRY(sides_create(ctx, outer->vertex_count, outer->triangle_count, (const int32_t(*)[3])outer->triangle,
                      &s.outer));
     TRY(list_border(ctx, &s));
-    TRY(draw_shell_lines(ctx, &s, &crossing));
-    TRY(ALLOCATE(ctx, s.home, s.drawing.point_count + 1));
-    TRY(triangulate_drawing(ctx, &s.drawing, crossing, chart->unit_mm, &s.plane, s.home));
-    TRY(label_inside(ctx, &s));
+    TRY(arrange_patch(ctx, &s, SHEET_LEAST * s.length.finest / chart->unit_mm));
+    s.fine.least = SHEET_LEAST * s.length.finest;
     TRY(chart_lift_create(ctx, patch, shell, s.drawing.scale, 0.25 * s.drawing.scale * chart->pixel_units,
                           s.length.finest, &s.lift));
     TRY(refine_patch(ctx, &s));
