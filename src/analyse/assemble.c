@@ -15,8 +15,9 @@ static const double GOOD_RESIDUAL = 1e-10;
 
 typedef struct assembly {
     structure *s;
-    int32_t *first; // [node_count + 1] triangles of the node at a place: at[first[p]] .. at[first[p+1]-1]
-    int32_t *at;    // [3 * triangle_count]
+    int32_t from, to; // the places whose rows are this process's
+    int32_t *first;   // [node_count + 1] triangles of the node at a place: at[first[p]] .. at[first[p+1]-1]
+    int32_t *at;      // [3 * triangle_count]
 } assembly;
 
 void gather_unknowns(const structure *s, const double (*of_node)[NODE_UNKNOWNS], double *x)
@@ -166,7 +167,7 @@ static void assemble_run(void *shared, int32_t run)
 {
     const assembly *a = shared;
     const structure *s = a->s;
-    int32_t from = run * RUN, to = MIN(from + RUN, s->sheet->node_count);
+    int32_t from = a->from + run * RUN, to = MIN(from + RUN, a->to);
     int64_t begin = s->k.entry[s->k.row[from]], end = s->k.entry[s->k.row[to]];
     memset(s->k.value + begin, 0, (size_t)(end - begin) * sizeof *s->k.value);
     for (int32_t p = from; p < to; p++)
@@ -179,10 +180,11 @@ static void assemble_run(void *shared, int32_t run)
 }
 
 // Every unknown must resist: a triangle without area or thickness, or of no material, leaves a 0 or a NaN.
-static jali_status resists(jali_context *ctx, const structure *s)
+static jali_status resists(jali_context *ctx, const assembly *a)
 {
+    const structure *s = a->s;
     const block_matrix *k = &s->k;
-    for (int32_t p = 0; p < k->node_count; p++) {
+    for (int32_t p = a->from; p < a->to; p++) {
         const double *own = k->value + k->entry[k->row[p + 1] - 1], *place = s->sheet->node[s->node[p]];
         for (int32_t i = 0; i < k->first[p + 1] - k->first[p]; own += ++i + 1)
             if (!(*own > 0 && *own < INFINITY))
@@ -208,8 +210,9 @@ static jali_status assemble(jali_context *ctx, assembly *a)
 {
     jali_status status;
     TRY(step(ctx, "assemble", 0));
-    parallel(ctx, (a->s->sheet->node_count + RUN - 1) / RUN, assemble_run, a);
-    TRY(resists(ctx, a->s));
+    solver_share(a->s->sheet->node_count, &a->from, &a->to);
+    parallel(ctx, (a->to - a->from + RUN - 1) / RUN, assemble_run, a);
+    TRY(solver_agree(ctx, resists(ctx, a)));
     TRY(step(ctx, "assemble", 1));
 done:
     return status;
@@ -277,17 +280,17 @@ static double length_of(const double *x, int32_t count)
 // One step of iterative refinement where the residual asks for it; the better of the two is kept.
 static jali_status refine(jali_context *ctx, structure *s, const double *b, double *x, double *r, double *y)
 {
-    jali_status status = JALI_OK;
+    jali_status status;
     int32_t count = unknowns_of(&s->k);
     double whole = length_of(b, count);
     if (!(whole > 0)) return JALI_OK;
-    block_residual(&s->k, x, b, r);
+    TRY(solver_residual(ctx, s->solver, x, b, r));
     double residual = length_of(r, count) / whole;
     if (residual > GOOD_RESIDUAL) {
         memcpy(y, r, (size_t)count * sizeof *y);
         TRY(solver_solve(ctx, s->solver, 1, y));
         for (int32_t i = 0; i < count; i++) y[i] += x[i];
-        block_residual(&s->k, y, b, r);
+        TRY(solver_residual(ctx, s->solver, y, b, r));
         double refined = length_of(r, count) / whole;
         if (refined < residual) {
             memcpy(x, y, (size_t)count * sizeof *x);

@@ -212,32 +212,36 @@ static double length_of(const double *x, int32_t count)
     return sqrt(sum);
 }
 
-// r = f + P g - (K + P S P^T) x, and its length against that of the load.
-static double joint_residual(const attachments *a, int32_t of_case, const double *f, const double *x,
-                             double *y, double *v, double *r)
-{
-    int32_t count = unknowns_of(&a->s->k);
-    double whole = length_of(f, count);
-    for (int32_t i = 0; i < a->rank; i++) y[i] = x[a->row[i]];
-    bridge_forces(a, of_case, y, v);
-    block_residual(&a->s->k, x, f, r);
-    for (int32_t i = 0; i < a->rank; i++) r[a->row[i]] += v[i];
-    return whole > 0 ? length_of(r, count) / whole : 0;
-}
-
 // Scratch of a solution.
 typedef struct desk {
     double *f, *x, *r, *d; // [unknowns]
     double *y, *v;         // [rank]
 } desk;
 
+// r = f + P g - (K + P S P^T) x, and its length against that of the load.
+static jali_status joint_residual(jali_context *ctx, attachments *a, int32_t of_case, const desk *w,
+                                  const double *x, double *residual)
+{
+    jali_status status;
+    int32_t count = unknowns_of(&a->s->k);
+    double whole = length_of(w->f, count);
+    for (int32_t i = 0; i < a->rank; i++) w->y[i] = x[a->row[i]];
+    bridge_forces(a, of_case, w->y, w->v);
+    TRY(solver_residual(ctx, a->s->solver, x, w->f, w->r));
+    for (int32_t i = 0; i < a->rank; i++) w->r[a->row[i]] += w->v[i];
+    *residual = whole > 0 ? length_of(w->r, count) / whole : 0;
+done:
+    return status;
+}
+
 // What a residual r would move: two more solutions. The better of old and new is kept.
 static jali_status refine(jali_context *ctx, attachments *a, const coupling *m, int32_t of_case,
                           const desk *w)
 {
-    jali_status status = JALI_OK;
+    jali_status status;
     int32_t count = unknowns_of(&a->s->k);
-    double residual = joint_residual(a, of_case, w->f, w->x, w->y, w->v, w->r);
+    double residual, refined;
+    TRY(joint_residual(ctx, a, of_case, w, w->x, &residual));
     if (residual > GOOD_RESIDUAL) {
         memcpy(w->d, w->r, (size_t)count * sizeof *w->d);
         TRY(solver_solve(ctx, a->s->solver, 1, w->d));
@@ -246,7 +250,7 @@ static jali_status refine(jali_context *ctx, attachments *a, const coupling *m, 
         for (int32_t i = 0; i < a->rank; i++) w->d[a->row[i]] += w->v[i];
         TRY(solver_solve(ctx, a->s->solver, 1, w->d));
         for (int32_t i = 0; i < count; i++) w->d[i] += w->x[i];
-        double refined = joint_residual(a, of_case, w->f, w->d, w->y, w->v, w->r);
+        TRY(joint_residual(ctx, a, of_case, w, w->d, &refined));
         if (refined < residual) {
             memcpy(w->x, w->d, (size_t)count * sizeof *w->x);
             residual = refined;

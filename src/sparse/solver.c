@@ -71,6 +71,25 @@ static double count_flops(const elimination *e)
     return flops;
 }
 
+void solver_share(int32_t node_count, int32_t *from, int32_t *to)
+{
+    *from = 0;
+    *to = node_count;
+}
+
+jali_status solver_agree(jali_context *ctx, jali_status status)
+{
+    (void)ctx;
+    return status;
+}
+
+jali_status solver_residual(jali_context *ctx, solver *s, const double *x, const double *b, double *r)
+{
+    (void)ctx;
+    block_residual(s->a, x, b, r);
+    return JALI_OK;
+}
+
 jali_status solver_open(jali_context *ctx, const block_matrix *a, solver **out)
 {
     jali_status status;

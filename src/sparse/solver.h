@@ -18,6 +18,16 @@ typedef struct solver_figures {
     int32_t fronts;
 } solver_figures;
 
+/// Which nodes this process assembles: from .. to-1. All of them, unless several processes share the work
+/// (mpi/petsc.c has the same door; each of them then runs the same program and sees the same answers).
+void solver_share(int32_t node_count, int32_t *from, int32_t *to);
+
+/// The worst of all processes' outcomes, so that they go on or end together.
+jali_status solver_agree(jali_context *ctx, jali_status status);
+
+/// r = b - A x.
+jali_status solver_residual(jali_context *ctx, solver *s, const double *x, const double *b, double *r);
+
 /// Order and analyse a pattern; the values are not looked at.
 ///   in     a     must live and keep its pattern as long as the solver does; each node has a block of its own
 ///   out    s     close with solver_close; also on failure NULL
