@@ -16,6 +16,8 @@ typedef struct jali_render_options {
     bool lamp;    // night, and a lamp inside (behind what has no inside); default false: day
     bool draft;   // about a fifth of the time: light from the sky falls everywhere, one sample
                   // a pixel away from edges; default false
+    const uint8_t (*colour)[3]; // [vertex_count] of the mesh, sRGB, linear between vertices; NULL (default):
+                                // stone
 } jali_render_options;
 
 JALI_API jali_render_options jali_render_defaults(void);

@@ -41,7 +41,7 @@ static void look_at_plane(vec from, vec direction, vec normal, double height, ma
 {
     double fall = -dot(direction, normal), above = dot(from, normal) - height;
     if (fall <= 0 || above <= 0 || above >= seen->distance * fall) return;
-    *seen = (sight){what, above / fall, along(from, direction, above / fall), normal};
+    *seen = (sight){what, above / fall, along(from, direction, above / fall), normal, -1};
 }
 
 static void look_at_bulb(const stage *s, vec from, vec direction, sight *seen)
@@ -52,7 +52,7 @@ static void look_at_bulb(const stage *s, vec from, vec direction, sight *seen)
     double t = -half - sqrt(half * half - rest);
     if (t >= seen->distance) return;
     vec at = along(from, direction, t);
-    *seen = (sight){BULB, t, at, unit(subtract(at, s->bulb))};
+    *seen = (sight){BULB, t, at, unit(subtract(at, s->bulb)), -1};
 }
 
 sight look(const stage *s, vec from, vec direction)
@@ -63,7 +63,7 @@ sight look(const stage *s, vec from, vec direction)
     if (ray_nearest(s->scene, &r, &hit)) {
         double n[3];
         ray_scene_normal(s->scene, hit.place, n);
-        seen = (sight){OBJECT, hit.t, along(from, direction, hit.t), {n[0], n[1], n[2]}};
+        seen = (sight){OBJECT, hit.t, along(from, direction, hit.t), {n[0], n[1], n[2]}, hit.place};
         if (dot(seen.normal, direction) > 0) seen.normal = scaled(seen.normal, -1);
     }
     look_at_plane(from, direction, s->up, s->ground - 1e-5 * s->scene->size, GROUND, &seen);
@@ -107,9 +107,39 @@ vec direct_light(const stage *s, const sight *seen, uint32_t turn)
     return s->lamp ? lamplight_on(s, seen, turn) : sunlight_on(s, seen, turn);
 }
 
-static vec tone_of(material what)
+static double linear_of(double byte)
 {
-    return what == OBJECT ? stone : what == GROUND ? floor_tone : plaster;
+    double v = byte / 255;
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+// Between the colours of the triangle's corners, by area.
+static vec painted(const stage *s, const sight *seen)
+{
+    const float(*c)[3] = (const float(*)[3])s->scene->corner[seen->place];
+    const int32_t *vertex = s->mesh->triangle[s->scene->tree.item[seen->place]];
+    vec corner[3], tone[3];
+    double share[3], all = 0;
+    for (int i = 0; i < 3; i++) {
+        const uint8_t *rgb = s->colour[vertex[i]];
+        corner[i] = (vec){c[i][0], c[i][1], c[i][2]};
+        tone[i] = (vec){linear_of(rgb[0]), linear_of(rgb[1]), linear_of(rgb[2])};
+    }
+    for (int i = 0; i < 3; i++) {
+        vec a = subtract(corner[(i + 1) % 3], seen->at), b = subtract(corner[(i + 2) % 3], seen->at);
+        share[i] = length(cross(a, b));
+        all += share[i];
+    }
+    if (!(all > 0)) return tone[0];
+    vec sum = {0};
+    for (int i = 0; i < 3; i++) sum = along(sum, tone[i], share[i] / all);
+    return sum;
+}
+
+static vec tone_of(const stage *s, const sight *seen)
+{
+    if (seen->what == OBJECT) return s->colour ? painted(s, seen) : stone;
+    return seen->what == GROUND ? floor_tone : plaster;
 }
 
 // What comes from a direction in which nothing stands.
@@ -134,7 +164,7 @@ static vec reflected_along(const stage *s, const sight *seen, vec direction, uin
     if (other.what == NOTHING || other.what == BULB) return moonlight;
     // A few rays that find the lamp's own surroundings would show as spots.
     const double most = 1.2;
-    vec light = times(tone_of(other.what), lamplight_on(s, &other, turn));
+    vec light = times(tone_of(s, &other), lamplight_on(s, &other, turn));
     double brightest = MAX(light.x, MAX(light.y, light.z));
     return add(brightest > most ? scaled(light, most / brightest) : light, moonlight);
 }
@@ -168,7 +198,7 @@ vec colour_of(const stage *s, const sight *seen, vec direct, vec ambient)
 {
     if (seen->what == NOTHING) return s->lamp ? (vec){0.004, 0.005, 0.008} : backdrop;
     if (seen->what == BULB) return (vec){1, 0.93, 0.78};
-    vec light = times(tone_of(seen->what), add(direct, ambient));
+    vec light = times(tone_of(s, seen), add(direct, ambient));
     if (s->lamp) return developed(light, 0.9);
     vec colour = developed(light, 0.62);
     if (seen->what == OBJECT) {

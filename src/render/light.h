@@ -10,6 +10,7 @@ typedef struct sight {
     material what;
     double distance; // from the eye
     vec at, normal;  // unit, on the side that is seen
+    int32_t place;   // of the object's triangle in the scene
 } sight;
 
 /// What is seen from a point in a unit direction.

@@ -204,6 +204,8 @@ jali_status jali_render(jali_context *ctx, const jali_mesh *mesh, const jali_ren
     TRY(mesh_validate(ctx, mesh));
     TRY(ray_scene_create(ctx, mesh, &scene));
     TRY(stage_create(ctx, &scene, mesh, &opt, &s));
+    s.mesh = mesh;
+    s.colour = opt.colour;
     TRY(ALLOCATE(ctx, c.seen, (size_t)c.width * (size_t)c.height));
     for (int i = 0; i < 2; i++) TRY(ALLOCATE(ctx, c.light[i], (size_t)c.width * (size_t)c.height));
     TRY(pass(ctx, &c, sample_row, 0, 0.6));
