@@ -196,36 +196,55 @@ done:
 
 // --- The finish: one piece, nothing thinner than the widths, no neck either
 
-static jali_status finish(jali_context *ctx, optimising *o, jali_bitmap *mask)
+// One round: cores, bridges between them, voids that became too narrow. Only the first may take solid off.
+static jali_status finish_round(jali_context *ctx, optimising *o, bool first, jali_bitmap *mask)
 {
     jali_status status;
-    jali_bitmap cores = {0}, before = {0};
+    jali_bitmap cores = {0};
     jali_bridges bridges = {0};
     jali_connect_options connect = {o->metric};
     jali_optimised *r = o->result;
-    bool changed = true;
-    for (int32_t round = 0; changed || round < 2; round++) { // the first only takes off, the second mends
-        TRY(step(ctx, "finish", 0));
-        TRY(jali_bitmap_copy(ctx, mask, &before));
-        TRY(jali_adapt_cores(ctx, &o->widths, round > 0, mask, &cores));
-        if (round == 0) {
-            r->bridge_pixels = -count_white(ctx, mask);
-            if (o->opt.details) TRY(jali_bitmap_copy(ctx, mask, &r->bridge_mask));
-        }
-        TRY(jali_connect(ctx, &cores, &connect, &cores, &bridges));
-        TRY(jali_adapt_lay(ctx, &bridges, &o->widths, mask));
-        r->bridges += bridges.count;
-        changed = count_combined(ctx, RULE_XOR, mask, &before) > 0;
-        jali_bridges_free(ctx, &bridges);
-        jali_bitmap_free(ctx, &cores);
-        jali_bitmap_free(ctx, &before);
+    TRY(step(ctx, "finish", 0));
+    TRY(jali_adapt_cores(ctx, &o->widths, !first, mask, &cores));
+    if (first) {
+        r->bridge_pixels = -count_white(ctx, mask);
+        if (o->opt.details) TRY(jali_bitmap_copy(ctx, mask, &r->bridge_mask));
     }
-    r->bridge_pixels += count_white(ctx, mask);
-    if (o->opt.details) combine(ctx, RULE_XOR, &r->bridge_mask, mask, &r->bridge_mask);
+    TRY(jali_connect(ctx, &cores, &connect, &cores, &bridges));
+    TRY(jali_adapt_lay(ctx, &bridges, &o->widths, mask));
+    r->bridges += bridges.count;
 done:
     jali_bridges_free(ctx, &bridges);
     jali_bitmap_free(ctx, &cores);
+    return status;
+}
+
+// Rounds until nothing changes; at least `least` of them.
+static jali_status finish_rounds(jali_context *ctx, optimising *o, bool take_off, int32_t least,
+                                 jali_bitmap *mask)
+{
+    jali_status status = JALI_OK;
+    jali_bitmap before = {0};
+    bool changed = true;
+    for (int32_t round = 0; changed || round < least; round++) {
+        TRY(jali_bitmap_copy(ctx, mask, &before));
+        TRY(finish_round(ctx, o, take_off && round == 0, mask));
+        changed = count_combined(ctx, RULE_XOR, mask, &before) > 0;
+        jali_bitmap_free(ctx, &before);
+    }
+done:
     jali_bitmap_free(ctx, &before);
+    return status;
+}
+
+static jali_status finish(jali_context *ctx, optimising *o, jali_bitmap *mask)
+{
+    jali_status status;
+    jali_optimised *r = o->result;
+    TRY(finish_rounds(ctx, o, true, 2, mask)); // the first only takes off, the second mends
+    r->bridge_pixels += count_white(ctx, mask);
+    if (o->opt.details) combine(ctx, RULE_XOR, &r->bridge_mask, mask, &r->bridge_mask);
+done:
     return status;
 }
 
@@ -365,6 +384,32 @@ jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const j
     TRY(count_residual(ctx, &o, &result->mask));
 done:
     if (status != JALI_OK) jali_optimised_free(ctx, result);
+    jali_elements_free(ctx, elements);
+    return status;
+}
+
+jali_status jali_optimise_add(jali_context *ctx, const jali_bridges *bridges, const jali_chart *chart,
+                              const jali_optimise_options *given, jali_optimised *result)
+{
+    jali_status status;
+    optimising o = {.chart = chart, .opt = given ? *given : jali_optimise_defaults(), .result = result};
+    jali_elements *elements = NULL;
+    jali_bitmap before = {0};
+    TRY(prepare(ctx, &o));
+    TRY(jali_elements_create(ctx, &o.widths, result->mask.width_px, result->mask.height_px, &elements));
+    o.widths.elements = elements;
+    TRY(jali_bitmap_copy(ctx, &result->mask, &before));
+    TRY(jali_adapt_lay(ctx, bridges, &o.widths, &result->mask));
+    result->bridges += bridges->count;
+    TRY(finish_rounds(ctx, &o, false, 1, &result->mask));
+    result->bridge_pixels += count_combined(ctx, RULE_AND_NOT, &result->mask, &before);
+    if (result->bridge_mask.width_px > 0) {
+        combine(ctx, RULE_AND_NOT, &result->mask, &before, &before);
+        combine(ctx, RULE_OR, &result->bridge_mask, &before, &result->bridge_mask);
+    }
+    TRY(count_residual(ctx, &o, &result->mask));
+done:
+    jali_bitmap_free(ctx, &before);
     jali_elements_free(ctx, elements);
     return status;
 }

@@ -61,6 +61,17 @@ JALI_API void jali_paper_kernels(double phi_e_mm, double phi_s_mm, double phi_v_
 JALI_API jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,
                                    const jali_optimise_options *opt, jali_optimised *result);
 
+/// Lay more bridges into a result's mask, by the same rules: as wide as the printer needs, and what voids
+/// beside them become too narrow is filled.
+///   in     bridges   from and to are pixels of the mask
+///          opt       as the mask was made with
+///   inout  result    mask, residual, bridges, bridge_pixels, bridge_mask; the mask only ever gains solid
+///   fails  JALI_BAD_VALUE, JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT; the mask may then have gained some of
+///   it
+JALI_API jali_status jali_optimise_add(jali_context *ctx, const jali_bridges *bridges,
+                                       const jali_chart *chart, const jali_optimise_options *opt,
+                                       jali_optimised *result);
+
 #ifdef __cplusplus
 }
 #endif
