@@ -1,0 +1,408 @@
+// Which connectors are worth their pixels.
+//
+// A connector with deformations B u and stiffnesses S changes the displacements by -K^-1 B^T (S^-1 + B K^-1
+// B^T)^-1 B u, so a stress with the gradient c by -(B a)^T (S^-1 + F)^-1 (B u), where a = K^-1 c comes from
+// one solution a hot spot and F = B K^-1 B^T from the inverse's entries at the connector's ends: exact, and
+// nothing is solved for a connector. What one connector does to the others' B u, B a and F is the same
+// formula once more. A first sieve goes over all spans with a guess at F: how far the ends move under all of
+// the load. Checked: tests/test_reinforce.c: against a new factor.
+#include "reinforce/rank.h"
+#include "reinforce/plank.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SIEVED = 104, WIDTHS = 4, MOST_PLACES = 16 };
+
+static const double times_wider[WIDTHS] = {1, 2, 4, 8};
+
+// --- The sieve
+
+static double length_of(const double v[6])
+{
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+// Visible pixels of a connector.
+static double pixels_of(const span *s, const rank_options *opt)
+{
+    return fmax(1, s->length_mm * s->width_mm / (opt->pixel_mm * opt->pixel_mm));
+}
+
+// The stress that a beam alone would take off a hot spot a visible pixel, F guessed.
+static double guessed_worth(const beam *b, const span *s, const outlook *now, int32_t hotspot,
+                            const double moved[BEAM_MODES], const rank_options *opt)
+{
+    double influence[BEAM_MODES], relief = 0;
+    double softness = 4 * (length_of(now->u[b->node[0]]) + length_of(now->u[b->node[3]])) / now->load_n;
+    beam_deformation(b, now->adjoint[hotspot], influence);
+    for (int m = 0; m < b->mode_count; m++) {
+        // A turn's softness: that of a place which a force moves so far a length away.
+        bool turns = m == 0 || m == 1 || m == 3;
+        double f = turns ? softness / (s->length_mm * s->length_mm + s->width_mm * s->width_mm) : softness;
+        relief += influence[m] * moved[m] / (1 / b->stiffness[m] + f);
+    }
+    return relief / pixels_of(s, opt);
+}
+
+static double gap(const jali_sheet *sheet, int32_t a, int32_t b)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += (sheet->node[a][k] - sheet->node[b][k]) * (sheet->node[a][k] - sheet->node[b][k]);
+    return sqrt(sum);
+}
+
+// Least distance between two straight connectors, each at nine places.
+double spans_apart(const jali_sheet *sheet, const span *a, const span *b)
+{
+    enum { PLACES = 8 };
+    double least2 = INFINITY;
+    for (int i = 0; i <= PLACES; i++)
+        for (int j = 0; j <= PLACES; j++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++) {
+                double p = sheet->node[a->node[0]][k] +
+                           (sheet->node[a->node[1]][k] - sheet->node[a->node[0]][k]) * i / PLACES;
+                double q = sheet->node[b->node[0]][k] +
+                           (sheet->node[b->node[1]][k] - sheet->node[b->node[0]][k]) * j / PLACES;
+                sum += (p - q) * (p - q);
+            }
+            least2 = fmin(least2, sum);
+        }
+    return sqrt(least2);
+}
+
+static bool same_place(const jali_sheet *sheet, const span *a, const span *b)
+{
+    if (a->width_mm != b->width_mm) return false;
+    double straight = fmax(gap(sheet, a->node[0], b->node[0]), gap(sheet, a->node[1], b->node[1]));
+    double turned = fmax(gap(sheet, a->node[0], b->node[1]), gap(sheet, a->node[1], b->node[0]));
+    return fmin(straight, turned) < 2 * a->width_mm;
+}
+
+// The best so far, the best first.
+typedef struct podium {
+    int32_t count, places;
+    span best[MOST_PLACES];
+} podium;
+
+// Take a span in when it is among the best; of those in one place only the best stays.
+static void compete(const jali_sheet *sheet, const borders *loops, podium *p, const span *s)
+{
+    int32_t at = p->count;
+    if (s->worth <= 0 || (at == p->places && s->worth <= p->best[at - 1].worth)) return;
+    if (!plank_has_room(sheet, loops, s)) return;
+    for (int32_t i = 0; i < p->count; i++)
+        if (same_place(sheet, s, &p->best[i])) {
+            if (s->worth <= p->best[i].worth) return;
+            memmove(p->best + i, p->best + i + 1, (size_t)(--p->count - i) * sizeof *p->best);
+            i--;
+        }
+    p->count -= p->count == p->places;
+    for (at = p->count++; at > 0 && p->best[at - 1].worth < s->worth; at--) p->best[at] = p->best[at - 1];
+    p->best[at] = *s;
+}
+
+// The best spans of each width for each hot spot, twice as many for the highest; no two in the same place.
+static int32_t sieve(const jali_sheet *sheet, const borders *loops, const spans *all,
+                     const jali_material *material, bool bending_only, const outlook *now,
+                     const rank_options *opt, podium *podiums, span best[SIEVED])
+{
+    int32_t count = 0, shares = WIDTHS * (now->hotspot_count + 1);
+    for (int32_t k = 0; k < WIDTHS * now->hotspot_count; k++)
+        podiums[k] = (podium){.places = MIN((k < WIDTHS ? 2 : 1) * SIEVED / shares, MOST_PLACES)};
+    for (int32_t i = 0; i < all->count; i++)
+        for (int w = 0; w < WIDTHS; w++) {
+            beam b;
+            span s = all->span[i];
+            double moved[BEAM_MODES];
+            s.width_mm = times_wider[w] * opt->width_mm;
+            beam_along(sheet, loops, &s, material, bending_only, &b);
+            beam_deformation(&b, now->u, moved);
+            for (int32_t h = 0; h < now->hotspot_count; h++) {
+                s.worth = guessed_worth(&b, &s, now, h, moved, opt);
+                compete(sheet, loops, &podiums[h * WIDTHS + w], &s);
+            }
+        }
+    for (int32_t k = 0; k < WIDTHS * now->hotspot_count; k++)
+        for (int32_t i = 0; i < podiums[k].count; i++) {
+            bool taken = false;
+            for (int32_t j = 0; j < count && !taken; j++)
+                taken = same_place(sheet, &podiums[k].best[i], &best[j]);
+            if (!taken) best[count++] = podiums[k].best[i];
+        }
+    return count;
+}
+
+// --- Exactly, by modes
+
+/// Connectors laid and candidates; mode j of connector i is row 6 i + j.
+typedef struct table {
+    int32_t count, laid, rows;
+    const beam *beam;  // [count]
+    double *f;         // [rows * rows] B K^-1 B^T
+    double *moved;     // [rows] B u
+    double *influence; // [MOST_HOTSPOTS * rows] B a
+    double stress_mpa[MOST_HOTSPOTS];
+    int32_t hotspots;
+} table;
+
+static void table_free(jali_context *ctx, table *t)
+{
+    release(ctx, t->f);
+    release(ctx, t->moved);
+    release(ctx, t->influence);
+}
+
+static int by_number(const void *a, const void *b)
+{
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return x < y ? -1 : x > y;
+}
+
+static int32_t index_of(const int32_t *sorted, int32_t count, int32_t row)
+{
+    int32_t low = 0, high = count;
+    while (low + 1 < high) {
+        int32_t middle = (low + high) / 2;
+        if (sorted[middle] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+// Every unknown that some beam ends on, ascending, each once.
+static int32_t ends_of(const structure *s, const table *t, int32_t *row)
+{
+    int32_t count = 0, kept = 0;
+    for (int32_t i = 0; i < t->count; i++)
+        for (int32_t n = 0; n < BEAM_NODES; n++)
+            for (int bit = 0; bit < 6; bit++) {
+                int32_t r = unknown_at(s, t->beam[i].node[n], bit);
+                if (r >= 0) row[count++] = r;
+            }
+    qsort(row, (size_t)count, sizeof *row, by_number);
+    for (int32_t i = 0; i < count; i++)
+        if (i == 0 || row[i] != row[i - 1]) row[kept++] = row[i];
+    return kept;
+}
+
+// Weights of a beam's mode, by place among the rows; returns how many.
+static int32_t weights_of(const structure *s, const beam *b, int m, const int32_t *row, int32_t row_count,
+                          int32_t *at, double *weight)
+{
+    int32_t count = 0;
+    for (int32_t n = 0; n < BEAM_NODES; n++)
+        for (int bit = 0; bit < 6; bit++) {
+            int32_t r = unknown_at(s, b->node[n], bit);
+            if (r < 0 || b->weight[m][n][bit] == 0) continue;
+            at[count] = index_of(row, row_count, r);
+            weight[count++] = b->weight[m][n][bit];
+        }
+    return count;
+}
+
+static jali_status fill_flexibility(jali_context *ctx, structure *s, table *t)
+{
+    jali_status status;
+    enum { MOST_WEIGHTS = BEAM_NODES * 6 };
+    int32_t *row = NULL, at[2][MOST_WEIGHTS];
+    double *inverse = NULL, weight[2][MOST_WEIGHTS];
+    TRY(ALLOCATE(ctx, row, (size_t)t->count * MOST_WEIGHTS));
+    int32_t count = ends_of(s, t, row);
+    TRY(ALLOCATE(ctx, inverse, (size_t)count * (size_t)count));
+    TRY(solver_inverse(ctx, s->solver, count, row, count, row, inverse));
+    for (int32_t p = 0; p < t->rows; p++) {
+        const beam *one = &t->beam[p / BEAM_MODES];
+        if (p % BEAM_MODES >= one->mode_count) continue;
+        int32_t mine = weights_of(s, one, p % BEAM_MODES, row, count, at[0], weight[0]);
+        for (int32_t q = 0; q <= p; q++) {
+            const beam *other = &t->beam[q / BEAM_MODES];
+            double sum = 0;
+            if (q % BEAM_MODES >= other->mode_count) continue;
+            int32_t yours = weights_of(s, other, q % BEAM_MODES, row, count, at[1], weight[1]);
+            for (int32_t i = 0; i < mine; i++)
+                for (int32_t j = 0; j < yours; j++)
+                    sum += weight[0][i] * weight[1][j] *
+                           inverse[(size_t)at[0][i] * (size_t)count + (size_t)at[1][j]];
+            t->f[p * t->rows + q] = t->f[q * t->rows + p] = sum;
+        }
+    }
+done:
+    release(ctx, row);
+    release(ctx, inverse);
+    return status;
+}
+
+// y = (S^-1 + F)^-1 x for one connector: at most six unknowns, symmetric and positive definite.
+static void solve_small(const table *t, int32_t i, const double *x, double *y)
+{
+    int n = t->beam[i].mode_count;
+    double l[BEAM_MODES][BEAM_MODES];
+    for (int r = 0; r < n; r++)
+        for (int c = 0; c <= r; c++) {
+            double sum = t->f[(6 * i + r) * t->rows + 6 * i + c];
+            if (r == c) sum += 1 / t->beam[i].stiffness[r];
+            for (int k = 0; k < c; k++) sum -= l[r][k] * l[c][k];
+            l[r][c] = r == c ? sqrt(fmax(sum, 1e-300)) : sum / l[c][c];
+        }
+    for (int r = 0; r < n; r++) {
+        y[r] = x[r];
+        for (int k = 0; k < r; k++) y[r] -= l[r][k] * y[k];
+        y[r] /= l[r][r];
+    }
+    for (int r = n - 1; r >= 0; r--) {
+        for (int k = r + 1; k < n; k++) y[r] -= l[k][r] * y[k];
+        y[r] /= l[r][r];
+    }
+}
+
+// What a connector would take off a hot spot.
+static double relief_of(const table *t, int32_t i, int32_t hotspot)
+{
+    double y[BEAM_MODES], sum = 0;
+    solve_small(t, i, t->moved + 6 * i, y);
+    for (int m = 0; m < t->beam[i].mode_count; m++) sum += t->influence[hotspot * t->rows + 6 * i + m] * y[m];
+    return sum;
+}
+
+// The stress inside a connector itself, at most.
+static double own_stress(const table *t, int32_t i)
+{
+    double y[BEAM_MODES], sum = 0;
+    solve_small(t, i, t->moved + 6 * i, y);
+    for (int m = 0; m < t->beam[i].mode_count; m++) sum += fabs(y[m]) * t->beam[i].stress[m];
+    return sum;
+}
+
+// Lay a connector: what it does to F, and, unless the displacements know of it already, to them and the
+// stresses.
+static void lay(table *t, int32_t i, bool known)
+{
+    int n = t->beam[i].mode_count;
+    double y[BEAM_MODES], column[BEAM_MODES];
+    if (!known) {
+        for (int32_t h = 0; h < t->hotspots; h++) t->stress_mpa[h] -= relief_of(t, i, h);
+        for (int32_t h = 0; h < t->hotspots; h++) {
+            double *a = t->influence + h * t->rows;
+            solve_small(t, i, a + 6 * i, y);
+            for (int32_t p = 0; p < t->rows; p++)
+                if (p / 6 != i)
+                    for (int m = 0; m < n; m++) a[p] -= t->f[p * t->rows + 6 * i + m] * y[m];
+        }
+        solve_small(t, i, t->moved + 6 * i, y);
+        for (int32_t p = 0; p < t->rows; p++)
+            if (p / 6 != i)
+                for (int m = 0; m < n; m++) t->moved[p] -= t->f[p * t->rows + 6 * i + m] * y[m];
+    }
+    for (int32_t q = 0; q < t->rows; q++) { // a column at a time; its own rows last
+        if (q / 6 == i) continue;
+        for (int m = 0; m < n; m++) column[m] = t->f[(6 * i + m) * t->rows + q];
+        solve_small(t, i, column, y);
+        for (int32_t p = 0; p < t->rows; p++)
+            if (p / 6 != i)
+                for (int m = 0; m < n; m++) t->f[p * t->rows + q] -= t->f[p * t->rows + 6 * i + m] * y[m];
+    }
+}
+
+static int32_t highest(const table *t)
+{
+    int32_t best = 0;
+    for (int32_t h = 1; h < t->hotspots; h++)
+        if (t->stress_mpa[h] > t->stress_mpa[best]) best = h;
+    return best;
+}
+
+// Would it be about as bad itself as the highest hot spot is now, or push another one well above that? (A
+// little more is let pass: the next connector of the round sees to that one.)
+static bool harms(const table *t, int32_t i, int32_t hot)
+{
+    const double a_little = 1.1;
+    if (own_stress(t, i) > 0.9 * t->stress_mpa[hot]) return true;
+    for (int32_t h = 0; h < t->hotspots; h++)
+        if (h != hot && t->stress_mpa[h] - relief_of(t, i, h) > a_little * t->stress_mpa[hot]) return true;
+    return false;
+}
+
+// The connector that takes most off the highest hot spot a pixel, of those that take off at least a quarter
+// of what the best does; -1 when that is less than 1 %.
+static int32_t best_connector(const table *t, const span *candidate, const uint8_t *out,
+                              const rank_options *opt)
+{
+    int32_t hot = highest(t), best = -1;
+    double most = 0, worth = 0;
+    for (int32_t i = t->laid; i < t->count; i++)
+        if (!out[i] && !harms(t, i, hot)) most = fmax(most, relief_of(t, i, hot));
+    if (most < 0.01 * t->stress_mpa[hot]) return -1;
+    for (int32_t i = t->laid; i < t->count; i++) {
+        if (out[i] || harms(t, i, hot)) continue;
+        double relief = relief_of(t, i, hot), a_pixel = relief / pixels_of(&candidate[i - t->laid], opt);
+        if (relief < 0.25 * most || a_pixel <= worth) continue;
+        worth = a_pixel;
+        best = i;
+    }
+    return best;
+}
+
+static void choose(const jali_sheet *sheet, table *t, const span *candidate, uint8_t *out,
+                   const rank_options *opt, span *chosen, int32_t *count)
+{
+    for (int32_t i = 0; i < t->laid; i++) lay(t, i, true);
+    while (*count < opt->most && t->stress_mpa[highest(t)] > opt->limit_mpa) {
+        int32_t best = best_connector(t, candidate, out, opt);
+        if (best < 0) break;
+        lay(t, best, false);
+        const span *s = &candidate[best - t->laid];
+        chosen[(*count)++] = *s;
+        for (int32_t i = t->laid; i < t->count; i++)
+            if (spans_apart(sheet, s, &candidate[i - t->laid]) <
+                (s->width_mm + candidate[i - t->laid].width_mm) / 2 + opt->apart_mm)
+                out[i] = 1;
+    }
+}
+
+jali_status rank_spans(jali_context *ctx, structure *s, const jali_sheet *sheet, const borders *loops,
+                       const spans *all, const beam *laid, int32_t laid_count, const jali_material *material,
+                       const outlook *now, const rank_options *opt, span *chosen, int32_t *count)
+{
+    jali_status status;
+    span candidate[SIEVED];
+    table t = {.laid = laid_count, .hotspots = now->hotspot_count};
+    beam *beams = NULL;
+    uint8_t *out = NULL;
+    podium *podiums = NULL;
+    *count = 0;
+    if (now->hotspot_count == 0) return JALI_OK;
+    TRY(ALLOCATE(ctx, podiums, WIDTHS * MOST_HOTSPOTS));
+    int32_t sieved = sieve(sheet, loops, all, material, s->bending_only, now, opt, podiums, candidate);
+    t.count = laid_count + sieved;
+    t.rows = BEAM_MODES * t.count;
+    if (sieved == 0) goto done;
+    TRY(ALLOCATE(ctx, beams, t.count));
+    TRY(ALLOCATE_CLEARED(ctx, out, t.count));
+    TRY(ALLOCATE_CLEARED(ctx, t.f, (size_t)t.rows * (size_t)t.rows));
+    TRY(ALLOCATE_CLEARED(ctx, t.moved, t.rows));
+    TRY(ALLOCATE_CLEARED(ctx, t.influence, (size_t)MOST_HOTSPOTS * (size_t)t.rows));
+    t.beam = beams;
+    for (int32_t i = 0; i < t.count; i++) {
+        if (i < laid_count)
+            beams[i] = laid[i];
+        else
+            beam_along(sheet, loops, &candidate[i - laid_count], material, s->bending_only, &beams[i]);
+        beam_deformation(&beams[i], now->u, t.moved + BEAM_MODES * i);
+        for (int32_t h = 0; h < t.hotspots; h++)
+            beam_deformation(&beams[i], now->adjoint[h], t.influence + h * t.rows + BEAM_MODES * i);
+    }
+    memcpy(t.stress_mpa, now->stress_mpa, sizeof t.stress_mpa);
+    TRY(fill_flexibility(ctx, s, &t));
+    choose(sheet, &t, candidate, out, opt, chosen, count);
+done:
+    release(ctx, podiums);
+    release(ctx, beams);
+    release(ctx, out);
+    table_free(ctx, &t);
+    return status;
+}

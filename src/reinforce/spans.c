@@ -1,0 +1,218 @@
+// Where connectors could be laid: rays from the borders of the solid across the void.
+//
+// From border nodes about a connector's width apart five rays go out, square to the border and aslant; each
+// ends at the solid it meets first, at the border node nearest to there. The mask says what is void; where it
+// and the sheet's outline differ (by less than half a pixel), the ray begins a pixel out. Checked:
+// tests/test_reinforce.c: combs, rings, parts a known way apart.
+#include "reinforce/spans.h"
+
+#include <math.h>
+
+static const double SLANT[] = {0, 0.6, -0.6, 1.05, -1.05}; // rad from the square direction
+
+enum { RAYS = sizeof SLANT / sizeof *SLANT, CELL_PX = 4 };
+
+void borders_free(jali_context *ctx, borders *b)
+{
+    release(ctx, b->next);
+    release(ctx, b->last);
+    release(ctx, b->first);
+    release(ctx, b->node);
+    *b = (borders){0};
+}
+
+// Sides without a twin, found through the triangles around each node: a side (i, j) of some triangle, and no
+// triangle with (j, i).
+static jali_status link_borders(jali_context *ctx, const jali_sheet *sheet, borders *b)
+{
+    jali_status status;
+    int32_t *first = NULL, *out = NULL;
+    int32_t n = sheet->node_count;
+    TRY(ALLOCATE_CLEARED(ctx, first, n + 1));
+    TRY(ALLOCATE(ctx, out, 3 * (size_t)sheet->triangle_count));
+    for (int32_t t = 0; t < sheet->triangle_count; t++)
+        for (int i = 0; i < 3; i++) first[sheet->triangle[t][i]]++;
+    for (int32_t i = 0, sum = 0; i <= n; i++) {
+        int32_t here = i < n ? first[i] : 0;
+        first[i] = sum;
+        sum += here;
+    }
+    for (int32_t t = 0; t < sheet->triangle_count; t++)
+        for (int i = 0; i < 3; i++) out[first[sheet->triangle[t][i]]++] = sheet->triangle[t][(i + 1) % 3];
+    for (int32_t i = 0; i < n; i++) // first[i] now ends node i's
+        for (int32_t k = i ? first[i - 1] : 0; k < first[i]; k++) {
+            int32_t j = out[k];
+            bool twin = false;
+            for (int32_t m = j ? first[j - 1] : 0; m < first[j] && !twin; m++) twin = out[m] == i;
+            if (twin) continue;
+            b->next[i] = j;
+            b->last[j] = i;
+        }
+done:
+    release(ctx, first);
+    release(ctx, out);
+    return status;
+}
+
+static int32_t cell_of(const borders *b, const double at[2])
+{
+    int32_t x = (int32_t)floor(at[0] / b->cell_units), y = (int32_t)floor(at[1] / b->cell_units);
+    return MAX(0, MIN(y, b->rows - 1)) * b->columns + MAX(0, MIN(x, b->columns - 1));
+}
+
+typedef struct place {
+    double at[2];
+} place;
+
+static place place_of(const jali_sheet *sheet, int32_t i)
+{
+    return (place){{sheet->at[i][0], sheet->at[i][1]}};
+}
+
+static bool on_border(const jali_sheet *sheet, const borders *b, int32_t i)
+{
+    return (sheet->border[i] & JALI_BORDER_VOID) && b->next[i] >= 0 && b->last[i] >= 0 &&
+           sheet->at[i][0] != INT32_MIN;
+}
+
+jali_status borders_create(jali_context *ctx, const jali_sheet *sheet, const jali_chart *chart, borders *b)
+{
+    jali_status status;
+    *b = (borders){.cell_units = CELL_PX * chart->pixel_units};
+    b->columns = (chart->width_px + CELL_PX - 1) / CELL_PX;
+    b->rows = (chart->height_px + CELL_PX - 1) / CELL_PX;
+    int64_t cells = (int64_t)b->columns * b->rows;
+    TRY(ALLOCATE(ctx, b->next, sheet->node_count));
+    TRY(ALLOCATE(ctx, b->last, sheet->node_count));
+    TRY(ALLOCATE(ctx, b->node, sheet->node_count));
+    TRY(ALLOCATE_CLEARED(ctx, b->first, cells + 1));
+    memset(b->next, -1, (size_t)sheet->node_count * sizeof *b->next);
+    memset(b->last, -1, (size_t)sheet->node_count * sizeof *b->last);
+    TRY(link_borders(ctx, sheet, b));
+    for (int32_t i = 0; i < sheet->node_count; i++)
+        if (on_border(sheet, b, i)) b->first[cell_of(b, place_of(sheet, i).at) + 1]++;
+    for (int64_t c = 0; c < cells; c++) b->first[c + 1] += b->first[c];
+    for (int32_t i = 0; i < sheet->node_count; i++)
+        if (on_border(sheet, b, i)) b->node[b->first[cell_of(b, place_of(sheet, i).at)]++] = i;
+    for (int64_t c = cells; c > 0; c--) b->first[c] = b->first[c - 1]; // each had moved to the next one's
+    b->first[0] = 0;
+done:
+    if (status != JALI_OK) borders_free(ctx, b);
+    return status;
+}
+
+int32_t border_near(const borders *b, const jali_sheet *sheet, const double at[2], double reach)
+{
+    int32_t best = -1, ring = (int32_t)ceil(reach / b->cell_units);
+    double least = reach * reach;
+    int32_t here = cell_of(b, at), x = here % b->columns, y = here / b->columns;
+    for (int32_t v = MAX(y - ring, 0); v <= MIN(y + ring, b->rows - 1); v++)
+        for (int32_t u = MAX(x - ring, 0); u <= MIN(x + ring, b->columns - 1); u++) {
+            int32_t cell = v * b->columns + u;
+            for (int32_t k = b->first[cell]; k < b->first[cell + 1]; k++) {
+                double dx = sheet->at[b->node[k]][0] - at[0], dy = sheet->at[b->node[k]][1] - at[1];
+                if (dx * dx + dy * dy > least) continue;
+                least = dx * dx + dy * dy;
+                best = b->node[k];
+            }
+        }
+    return best;
+}
+
+static double node_distance(const jali_sheet *sheet, int32_t a, int32_t b)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += (sheet->node[a][k] - sheet->node[b][k]) * (sheet->node[a][k] - sheet->node[b][k]);
+    return sqrt(sum);
+}
+
+// White at a place of the chart; beyond the grid nothing can be reached.
+typedef enum ground { VOID_GROUND, SOLID_GROUND, NO_GROUND } ground;
+
+static ground ground_at(const jali_bitmap *mask, const jali_chart *chart, const double at[2])
+{
+    int32_t x = (int32_t)floor(at[0] / chart->pixel_units),
+            y = chart->height_px - 1 - (int32_t)floor(at[1] / chart->pixel_units);
+    if (x < 0 || y < 0 || x >= mask->width_px || y >= mask->height_px) return NO_GROUND;
+    return jali_bitmap_get(mask, x, y) ? SOLID_GROUND : VOID_GROUND;
+}
+
+// Where a ray from a border node meets solid again: its border node there, or -1.
+static int32_t cast(const jali_sheet *sheet, const borders *b, const jali_bitmap *mask,
+                    const jali_chart *chart, int32_t from, const double along[2], double longest_px)
+{
+    double at[2], px = chart->pixel_units;
+    for (double s = 1; s <= longest_px; s += 0.5) {
+        for (int k = 0; k < 2; k++) at[k] = sheet->at[from][k] + s * px * along[k];
+        ground g = ground_at(mask, chart, at);
+        if (g == NO_GROUND || (g == SOLID_GROUND && s < 2)) return -1;
+        if (g == SOLID_GROUND) return border_near(b, sheet, at, 3 * px);
+    }
+    return -1;
+}
+
+// The unit direction out of the solid at a border node, on the chart.
+static bool outward(const jali_sheet *sheet, const borders *b, int32_t i, double out[2])
+{
+    double dx = sheet->at[b->next[i]][0] - sheet->at[b->last[i]][0],
+           dy = sheet->at[b->next[i]][1] - sheet->at[b->last[i]][1], size = sqrt(dx * dx + dy * dy);
+    if (size == 0) return false;
+    out[0] = dy / size;
+    out[1] = -dx / size;
+    return true;
+}
+
+static jali_status spans_from(jali_context *ctx, const jali_sheet *sheet, const borders *b,
+                              const jali_bitmap *mask, const jali_chart *chart, int32_t from,
+                              double longest_mm, spans *found)
+{
+    double out[2];
+    double longest_px = 4 * longest_mm / jali_chart_pixel_mm(chart); // stretched at most four times
+    if (!outward(sheet, b, from, out)) return JALI_OK;
+    for (int i = 0; i < RAYS; i++) {
+        double c = cos(SLANT[i]), s = sin(SLANT[i]);
+        int32_t to = cast(sheet, b, mask, chart, from,
+                          (double[]){c * out[0] - s * out[1], s * out[0] + c * out[1]}, longest_px);
+        if (to < 0 || to == from || to == b->next[from] || to == b->last[from]) continue;
+        double length = node_distance(sheet, from, to);
+        if (length > longest_mm) continue;
+        jali_status status = GROW(ctx, found->span, found->capacity, (size_t)found->count + 1);
+        if (status != JALI_OK) return status;
+        found->span[found->count++] = (span){{from, to}, length, 0, 0};
+    }
+    return JALI_OK;
+}
+
+jali_status find_spans(jali_context *ctx, const jali_sheet *sheet, const borders *b, const jali_bitmap *mask,
+                       const jali_chart *chart, double apart_mm, double longest_mm, spans *found)
+{
+    jali_status status;
+    uint8_t *done_with = NULL;
+    *found = (spans){0};
+    TRY(ALLOCATE_CLEARED(ctx, done_with, sheet->node_count));
+    for (int32_t begin = 0; begin < sheet->node_count; begin++) {
+        if (done_with[begin] || !on_border(sheet, b, begin)) continue;
+        double since = apart_mm;
+        int32_t i = begin;
+        do { // along the loop
+            done_with[i] = 1;
+            if (since >= apart_mm) {
+                TRY(spans_from(ctx, sheet, b, mask, chart, i, longest_mm, found));
+                since = 0;
+            }
+            int32_t next = b->next[i];
+            if (!on_border(sheet, b, next)) break;
+            since += node_distance(sheet, i, next);
+            i = next;
+        } while (!done_with[i]);
+        TRY(step(ctx, "reinforce", 0));
+    }
+done:
+    if (status != JALI_OK) {
+        release(ctx, found->span);
+        *found = (spans){0};
+    }
+    release(ctx, done_with);
+    return status;
+}
