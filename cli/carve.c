@@ -1,6 +1,7 @@
 // jali carve PICTURE and jali adapt PICTURE: the whole pipeline, or its image stages alone; one picture on a
 // plate, or one or more on a surface.
 #include "outputs.h"
+#include "structure.h"
 #include "base/bytes.h"
 
 #include <stdio.h>
@@ -65,35 +66,36 @@ done:
     return status;
 }
 
+/// What is written, filled in one after the other.
+typedef struct shelf {
+    int32_t count;
+    jali_bytes bytes[MOST_OUTPUTS + OUTPUTS_BESIDE];
+    output out[MOST_OUTPUTS + OUTPUTS_BESIDE];
+} shelf;
+
+// The next place on the shelf, for a file of this name.
+static jali_bytes *place_for(shelf *s, const char *path)
+{
+    s->out[s->count] = (output){path, &s->bytes[s->count]};
+    return &s->bytes[s->count++];
+}
+
 static jali_status write_everything(jali_context *ctx, const settings *set, const made *m)
 {
     jali_status status = JALI_OK;
-    jali_bytes bytes[MOST_OUTPUTS + OUTPUTS_BESIDE] = {0};
-    output out[MOST_OUTPUTS + OUTPUTS_BESIDE];
-    int32_t count = 0;
-    for (int32_t i = 0; i < set->output_count; i++) {
-        TRY(make_bytes(ctx, m, set->output[i], &bytes[count]));
-        out[count] = (output){set->output[i], &bytes[count]};
-        count++;
-    }
-    if (set->json) {
-        TRY(figures_json(ctx, m, &bytes[count]));
-        out[count] = (output){set->json, &bytes[count]};
-        count++;
-    }
-    if (set->report) {
-        TRY(report_html(ctx, m, &bytes[count]));
-        out[count] = (output){set->report, &bytes[count]};
-        count++;
-    }
-    if (set->render) {
-        TRY(render_png(ctx, &m->object.mesh, &set->view, set->size_px, &bytes[count]));
-        out[count] = (output){set->render, &bytes[count]};
-        count++;
-    }
-    TRY(write_outputs(ctx, out, count));
+    shelf s = {0};
+    for (int32_t i = 0; i < set->output_count; i++)
+        TRY(make_bytes(ctx, m, set->output[i], place_for(&s, set->output[i])));
+    if (set->json) TRY(figures_json(ctx, m, place_for(&s, set->json)));
+    if (set->report) TRY(report_html(ctx, m, place_for(&s, set->report)));
+    if (set->render)
+        TRY(render_png(ctx, &m->object.mesh, &set->view, set->size_px, place_for(&s, set->render)));
+    if (set->map) TRY(map_bytes(ctx, &m->result[0], set->map, JALI_STRESS, place_for(&s, set->map)));
+    if (set->moved_map)
+        TRY(map_bytes(ctx, &m->result[0], set->moved_map, JALI_DISPLACEMENT, place_for(&s, set->moved_map)));
+    TRY(write_outputs(ctx, s.out, s.count));
 done:
-    for (int32_t i = 0; i < MOST_OUTPUTS + OUTPUTS_BESIDE; i++) jali_bytes_free(ctx, &bytes[i]);
+    for (int32_t i = 0; i < s.count; i++) jali_bytes_free(ctx, &s.bytes[i]);
     return status;
 }
 
@@ -116,6 +118,7 @@ static void tell_picture(const settings *set, const jali_picture *picture, const
         say(set, "predicted print: %.2f %% of it wrong (%.2f %% when only connected), %d piece%s",
             100 * r->result_print.error_rate, 100 * r->connected_print.error_rate, r->result_print.pieces,
             r->result_print.pieces == 1 ? "" : "s");
+    tell_structure(set, &r->strength);
 }
 
 static void tell(jali_context *ctx, const made *m)
@@ -138,21 +141,28 @@ static void tell(jali_context *ctx, const made *m)
         say(set, "much of it has no room for that wall: a model that is a thin wall already is better given "
                  "by its "
                  "outer skin alone");
-    if (set->make.solid)
+    if (set->make.solid && set->make.check)
         say(set, "%d triangles, %.4g cm3, %s", m->object.mesh.triangle_count,
             m->object.check.volume_mm3 / 1000, m->object.closed ? "closed and manifold" : "not a solid");
     say(set, "%.2f s, %.0f MB", seconds, (double)jali_peak_memory_bytes(ctx) / 1e6);
 }
 
+bool sound_of(const made *m)
+{
+    for (int32_t i = 0; i < m->count; i++)
+        if (m->set[i].make.structure && !m->result[i].strength.sound) return false;
+    return true;
+}
+
 static jali_status keep_promises(jali_context *ctx, const made *m)
 {
-    bool closed = !m->set[0].make.solid || m->object.closed, printable = true;
+    bool closed = !m->set[0].make.solid || !m->set[0].make.check || m->object.closed, printable = true;
     for (int32_t i = 0; i < m->count; i++) printable &= m->result[i].printable;
-    if (m->object.one_piece && printable && closed) return JALI_OK;
-    return fail(ctx, JALI_BROKEN, "done, but a promise is not kept:%s%s%s",
+    if (m->object.one_piece && printable && closed && sound_of(m)) return JALI_OK;
+    return fail(ctx, JALI_BROKEN, "done, but a promise is not kept:%s%s%s%s",
                 m->object.one_piece ? "" : " it is not one piece;",
                 printable ? "" : " some details are below the printer's widths;",
-                closed ? "" : " the mesh is not a solid;");
+                closed ? "" : " the mesh is not a solid;", sound_of(m) ? "" : " it does not bear the load;");
 }
 
 // A plate is an object with one picture.
@@ -265,6 +275,19 @@ done:
 jali_status run_carve(jali_context *ctx, const settings *set)
 {
     return make(ctx, set, true);
+}
+
+// As it is: no connectors, no matter whether it holds.
+jali_status run_analyse(jali_context *ctx, const settings *given)
+{
+    settings set = *given;
+    set.make.strengthen.reinforce.rule = JALI_REINFORCE_NONE;
+    set.make.check = false;
+    if (!set.make.structure)
+        return fail(
+            ctx, JALI_BAD_VALUE,
+            "there is no load to analyse; --force, --pressure, --weight, --push or --pinch gives one");
+    return make(ctx, &set, true);
 }
 
 jali_status run_adapt(jali_context *ctx, const settings *set)

@@ -25,6 +25,9 @@ typedef struct settings {
     const char *output[MOST_OUTPUTS];
     int32_t output_count;
     const char *json, *report, *render; // files
+    const char *map, *moved_map;        // stress and displacement: .png, .ply, .vtu
+    double limit_mpa;                   // 0 = the material's
+    bool no_structure;
     jali_read_options read;
     jali_options make;              // of all stages
     const char *surface;            // what to carve, as jali_surface_make takes it; NULL = a plate
@@ -57,6 +60,8 @@ typedef enum option_group {
     GROUP_RENDER = 8192, // a render beside other files
     GROUP_VIEW = 16384,  // what a render shows
     GROUP_SIDE = 32768,  // of a square picture
+    GROUP_LOAD = 65536,  // what the object bears, its maps
+    GROUP_REINFORCE = 131072,
 } option_group;
 
 typedef struct verb {
@@ -74,6 +79,7 @@ jali_status run_sample(jali_context *ctx, const settings *set);
 jali_status run_list(jali_context *ctx, const settings *set);
 jali_status run_adapt(jali_context *ctx, const settings *set);
 jali_status run_carve(jali_context *ctx, const settings *set);
+jali_status run_analyse(jali_context *ctx, const settings *set);
 jali_status run_check(jali_context *ctx, const settings *set);
 jali_status run_render(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
@@ -96,6 +102,9 @@ typedef struct made {
     jali_result *result;   // [count]
     jali_object object;    // a plate too; empty when only pictures were made
 } made;
+
+/// Does every picture bear its load?
+bool sound_of(const made *m);
 
 /// The pictures of one surface, from a file. {0} is valid and empty.
 typedef struct job {

@@ -1,8 +1,7 @@
 // The figures of a run as JSON, version 1. Keys are kept; new ones may come.
-#include "cli.h"
+#include "structure.h"
 #include "base/bytes.h"
 
-#include <jansson.h>
 #include <stdlib.h>
 
 static json_t *types_of(const int32_t count[JALI_TYPES])
@@ -74,8 +73,9 @@ static json_t *promises_of(const made *m)
 {
     bool printable = true;
     for (int32_t i = 0; i < m->count; i++) printable &= m->result[i].printable;
-    return json_pack("{s:b, s:b, s:o}", "one_piece", m->object.one_piece, "printable", printable, "closed",
-                     m->set[0].make.solid ? json_boolean(m->object.closed) : json_null());
+    return json_pack("{s:b, s:b, s:o, s:o}", "one_piece", m->object.one_piece, "printable", printable,
+                     "closed", m->set[0].make.solid ? json_boolean(m->object.closed) : json_null(), "sound",
+                     m->set[0].make.structure ? json_boolean(sound_of(m)) : json_null());
 }
 
 static json_t *vector_of(const double v[3])
@@ -114,14 +114,15 @@ static json_t *picture_of(const settings *set, const jali_picture *picture, cons
     const int32_t *kernel = r->optimised.kernels_px;
     return json_pack(
         "{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:{s:f, s:f, s:f}, s:{s:i, s:i, s:i},"
-        " s:{s:i, s:I, s:i}, s:o, s:o}",
+        " s:{s:i, s:I, s:i}, s:o, s:o, s:o}",
         "input", "width_px", picture->width_px, "height_px", picture->height_px, "white_components",
         r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm, rows * pixel_mm, "grid_px",
         columns, rows, "pixel_mm", pixel_mm, "place", set->surface ? place_of(r) : json_null(), "printer",
         "phi_e_mm", printer->phi_e_mm, "phi_s_mm", printer->phi_s_mm, "phi_v_mm", printer->phi_v_mm,
         "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2], "connect", "bridges",
         r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels, "pieces_dropped",
-        r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict", predict_of(set, r));
+        r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict", predict_of(set, r),
+        "structure", structure_of(set, &r->strength));
 }
 
 // The first picture's figures stand at the top; a job lists all of them as "pictures" too.

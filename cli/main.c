@@ -15,8 +15,12 @@ enum {
 static const verb verbs[] = {
     {"carve", "PICTURE", "carve a picture through a plate or a surface, ready to print",
      IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JOB | GROUP_JSON | GROUP_REPORT | GROUP_RENDER | GROUP_VIEW |
-         GROUP_SIDE | OUTPUT_AND_RUN,
+         GROUP_SIDE | GROUP_LOAD | GROUP_REINFORCE | OUTPUT_AND_RUN,
      ".3mf.stl.svg.dxf.png", run_carve},
+    {"analyse", "PICTURE", "what a load does to the carved picture as it is: stress and displacement",
+     IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | GROUP_LOAD | GROUP_OVERWRITE |
+         GROUP_RUN,
+     "", run_analyse},
     {"adapt", "PICTURE", "make the picture printable, and stop there",
      IMAGE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
@@ -26,7 +30,7 @@ static const verb verbs[] = {
     {"render", "MODEL", "draw a model, by day or with a lamp inside",
      GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_render},
     {"sample", "NAME", "draw one of the built-in pictures", GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_sample},
-    {"list", "KIND", "list what is built in: samples, surfaces", GROUP_RUN, "", run_list},
+    {"list", "KIND", "list what is built in: samples, surfaces, materials", GROUP_RUN, "", run_list},
 };
 
 enum { VERB_COUNT = sizeof verbs / sizeof *verbs };

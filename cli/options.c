@@ -25,7 +25,11 @@ typedef enum value_kind {
     PLACING,
     VECTOR,
     AT,
-    CAMERA
+    CAMERA,
+    MATERIAL,
+    SUPPORT,
+    PUSH,
+    REINFORCE
 } value_kind;
 
 typedef struct option {
@@ -114,6 +118,42 @@ static const option options[] = {
      "a film inside that stays behind the voids of a surface (0: none)"},
     {"thinnest", "MM", NUMBER, GROUP_SURFACE, FIELD(wall.least_mm), 0.01, 1000, "mm",
      "the least a surface's wall may be where it cannot have its thickness (0.3)"},
+    {"force", "N", NUMBER, GROUP_LOAD, FIELD(make.strengthen.analyse.load.force_n), -1e9, 1e9, "N",
+     "press evenly against the outer side with so much in all"},
+    {"pressure", "MPA", NUMBER, GROUP_LOAD, FIELD(make.strengthen.analyse.load.pressure_mpa), -1e6, 1e6, "MPa",
+     "the same, as force by area"},
+    {"weight", "TIMES", NUMBER, GROUP_LOAD, FIELD(make.strengthen.analyse.load.weight), 0, 1e6, "",
+     "its own weight, times this"},
+    {"gravity", "X,Y,Z", VECTOR, GROUP_LOAD, FIELD(make.strengthen.analyse.load.gravity), 0, 0, 0,
+     "where weight pulls to (0,0,-1)"},
+    {"push", "X,Y,Z,N", PUSH, GROUP_LOAD, 0, 0, 0, 0,
+     "push with N newtons on the spot nearest to a point"},
+    {"pinch", "N", NUMBER, GROUP_LOAD, FIELD(make.strengthen.analyse.load.pinch_n), -1e9, 1e9, "N",
+     "squeeze it between two fingers"},
+    {"pinch-axis", "X,Y,Z", VECTOR, GROUP_LOAD, FIELD(make.strengthen.analyse.load.pinch_axis), 0, 0, 0,
+     "the line through the fingers (1,0,0)"},
+    {"spot", "MM", NUMBER, GROUP_LOAD, FIELD(make.strengthen.analyse.load.spot_mm), 0.001, 1000, "mm",
+     "radius of what is pushed or pinched (3)"},
+    {"support", "picture|rim|base", SUPPORT, GROUP_LOAD, 0, 0, 0, 0,
+     "what is held: the picture's boundary, a plate's outline, what an object stands on (picture)"},
+    {"material", "NAME", MATERIAL, GROUP_LOAD, 0, 0, 0, 0,
+     "what it is made of (\"jali list materials\"; pla)"},
+    {"limit", "MPA", NUMBER, GROUP_LOAD, FIELD(limit_mpa), 1e-6, 1e6, "MPa",
+     "the largest stress to allow (the material's)"},
+    {"across", "N", WHOLE, GROUP_LOAD, FIELD(make.strengthen.across), 1, 16, 0,
+     "elements across the narrowest solid; 2 is a preview (4)"},
+    {"map", "FILE", TEXT, GROUP_LOAD, FIELD(map), 0, 0, 0,
+     "draw the stress: .png, .ply (coloured) or .vtu (ParaView)"},
+    {"displacement-map", "FILE", TEXT, GROUP_LOAD, FIELD(moved_map), 0, 0, 0,
+     "draw how far it gives way, likewise"},
+    {"reinforce", "best|paper|none", REINFORCE, GROUP_REINFORCE, 0, 0, 0, 0,
+     "lay connectors until it holds: where they help most, by the paper's rule, or not at all (best)"},
+    {"rounds", "N", WHOLE, GROUP_REINFORCE, FIELD(make.strengthen.reinforce.most_rounds), 1, 1000, 0,
+     "of connectors, at most (16)"},
+    {"longest", "MM", NUMBER, GROUP_REINFORCE, FIELD(make.strengthen.reinforce.longest_mm), 0.01, 10000, "mm",
+     "the longest connector (a third of the picture's shorter side)"},
+    {"no-structure", NULL, FLAG, GROUP_REINFORCE, FIELD(no_structure), 0, 0, 0,
+     "leave the load out of it, all the same"},
     {"job", "FILE", TEXT, GROUP_JOB, FIELD(job), 0, 0, 0,
      "several pictures on one surface, as JSON, in place of PICTURE (docs/job.md)"},
 
@@ -290,26 +330,29 @@ static bool parse_rotate(const option *o, const char *text, settings *set, char 
     return true;
 }
 
+// One of three names, as the number of its place.
+static bool parse_name(const char *option_name, const char *const name[3], const char *text, int32_t *number,
+                       char *sentence)
+{
+    for (*number = 0; *number < 3; ++*number)
+        if (strcmp(text, name[*number]) == 0) return true;
+    return wrong(sentence, "--%s takes %s, %s or %s, not \"%.40s\"", option_name, name[0], name[1], name[2],
+                 text);
+}
+
 static bool parse_progress(const char *text, settings *set, char *sentence)
 {
     static const char *const names[] = {"auto", "plain", "none"};
-    for (int32_t i = 0; i < 3; i++)
-        if (strcmp(text, names[i]) == 0) {
-            set->progress = i;
-            return true;
-        }
-    return wrong(sentence, "--progress takes auto, plain or none, not \"%.40s\"", text);
+    return parse_name("progress", names, text, &set->progress, sentence);
 }
 
 static bool parse_placing(const char *text, settings *set, char *sentence)
 {
     static const char *const names[] = {"auto", "project", "wrap"};
-    for (int32_t i = 0; i < 3; i++)
-        if (strcmp(text, names[i]) == 0) {
-            set->make.place.placing = (jali_placing)i;
-            return true;
-        }
-    return wrong(sentence, "--place takes auto, project or wrap, not \"%.40s\"", text);
+    int32_t number;
+    if (!parse_name("place", names, text, &number, sentence)) return false;
+    set->make.place.placing = (jali_placing)number;
+    return true;
 }
 
 // Three finite numbers with commas between them; *end is where they end.
@@ -358,6 +401,51 @@ static bool parse_camera(const char *text, settings *set, char *sentence)
     return wrong(sentence, "--camera needs from=X,Y,Z, where the eye is");
 }
 
+// X,Y,Z,N
+static bool parse_push(const char *text, settings *set, char *sentence)
+{
+    jali_load *load = &set->make.strengthen.analyse.load;
+    const char *rest;
+    char *end;
+    if (read_vector(text, load->push_at_mm, &rest) && *rest == ',') {
+        load->push_n = strtod(rest + 1, &end);
+        if (end != rest + 1 && (*end == 0 || strcmp(end, "N") == 0) && isfinite(load->push_n)) return true;
+    }
+    return wrong(sentence, "--push takes a place and a force such as 0,-40,25,10, not \"%.60s\"", text);
+}
+
+static bool parse_material(const char *text, settings *set, char *sentence)
+{
+    int32_t count;
+    const jali_material *list = jali_material_list(&count), *found = jali_material_find(text);
+    char names[200] = "";
+    if (found) {
+        set->make.strengthen.analyse.material = *found;
+        return true;
+    }
+    for (int32_t i = 0; i < count; i++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", list[i].name);
+    return wrong(sentence, "--material takes one of %s, not \"%.40s\"", names, text);
+}
+
+static bool parse_support(const char *text, settings *set, char *sentence)
+{
+    static const char *const names[] = {"picture", "rim", "base"};
+    int32_t number;
+    if (!parse_name("support", names, text, &number, sentence)) return false;
+    set->make.strengthen.analyse.support = (jali_support)number;
+    return true;
+}
+
+static bool parse_reinforce(const char *text, settings *set, char *sentence)
+{
+    static const char *const names[] = {"best", "paper", "none"};
+    int32_t number;
+    if (!parse_name("reinforce", names, text, &number, sentence)) return false;
+    set->make.strengthen.reinforce.rule = (jali_reinforcing)number;
+    return true;
+}
+
 static bool add_output(const char *text, settings *set, char *sentence)
 {
     if (set->output_count == MOST_OUTPUTS)
@@ -383,6 +471,10 @@ static bool set_option(const option *o, const char *text, settings *set, char *s
     case PROGRESS: return parse_progress(text, set, sentence);
     case PLACING: return parse_placing(text, set, sentence);
     case CAMERA: return parse_camera(text, set, sentence);
+    case MATERIAL: return parse_material(text, set, sentence);
+    case SUPPORT: return parse_support(text, set, sentence);
+    case PUSH: return parse_push(text, set, sentence);
+    case REINFORCE: return parse_reinforce(text, set, sentence);
     case VECTOR: return parse_vector(o, text, field, sentence);
     case AT: return set->make.place.at_given = parse_vector(o, text, set->make.place.at_mm, sentence);
     case NUMBER:
@@ -439,6 +531,11 @@ void settle_options(settings *set)
         set->make.repeat > 0 && place->placing != JALI_PLACE_PROJECT; // then that gives the size
     if (place->width_mm == 0 && place->height_mm == 0 && place->camera.fov_deg == 0 && !all_around)
         place->width_mm = jali_place_defaults().width_mm;
+    const jali_load *load = &set->make.strengthen.analyse.load;
+    set->make.structure =
+        !set->no_structure && (load->force_n != 0 || load->pressure_mpa != 0 || load->weight != 0 ||
+                               load->push_n != 0 || load->pinch_n != 0);
+    if (set->limit_mpa > 0) set->make.strengthen.analyse.material.limit_mpa = set->limit_mpa;
     if (set->thickness_mm > 0) set->make.carve.thickness_mm = set->wall.thickness_mm = set->thickness_mm;
 }
 

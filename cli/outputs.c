@@ -1,6 +1,7 @@
 // Output files.
 #include "outputs.h"
 #include "options.h"
+#include "structure.h"
 #include "base/file.h"
 
 #include <jali/png.h>
@@ -82,7 +83,13 @@ bool check_outputs(const verb *v, const settings *set, char *sentence)
                  set->render);
         return false;
     }
-    const char *const beside[] = {set->json, set->report, set->render};
+    const char *const maps[] = {set->map, set->moved_map};
+    for (int32_t i = 0; i < 2; i++)
+        if (maps[i] && !is_map(maps[i])) {
+            snprintf(sentence, SENTENCE_BYTES, "%s: a map is a .png, .ply or .vtu", maps[i]);
+            return false;
+        }
+    const char *const beside[] = {set->json, set->report, set->render, set->map, set->moved_map};
     for (int32_t i = 0; i < OUTPUTS_BESIDE; i++) {
         if (!check_output_beside(set, beside[i], sentence)) return false;
         if (beside[i]) path[count++] = beside[i];

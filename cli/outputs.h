@@ -4,7 +4,7 @@
 
 #include "cli.h"
 
-enum { OUTPUTS_BESIDE = 3 }; // figures, report, render
+enum { OUTPUTS_BESIDE = 5 }; // figures, report, render, two maps
 
 /// Suffixes the verb knows, no file named twice, none that exists (unless --force-overwrite), none the input.
 ///   out    sentence  what is wrong, when false comes back

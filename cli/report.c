@@ -2,7 +2,7 @@
 //
 // Pictures larger than MOST_MAP_PX are shrunk by the mean colour of whole blocks, so that no thin line
 // vanishes.
-#include "cli.h"
+#include "structure.h"
 #include "base/bytes.h"
 
 #include <jali/png.h>
@@ -90,8 +90,8 @@ static jali_status append_base64(jali_context *ctx, const jali_bytes *data, jali
     return JALI_OK;
 }
 
-static jali_status append_figure(jali_context *ctx, const jali_bytes *png, const char *title,
-                                 const char *legend, jali_bytes *html)
+jali_status append_figure(jali_context *ctx, const jali_bytes *png, const char *title, const char *legend,
+                          jali_bytes *html)
 {
     jali_status status;
     TRY(bytes_print(
@@ -258,6 +258,7 @@ static jali_status append_picture(jali_context *ctx, const settings *set, const 
     TRY(bytes_print(ctx, html, "<main>\n"));
     TRY(append_maps(ctx, set, r, html));
     TRY(bytes_print(ctx, html, "</main>"));
+    TRY(append_structure(ctx, set, r, html));
 done:
     return status;
 }
@@ -272,6 +273,7 @@ static jali_status append_object(jali_context *ctx, const made *m, jali_bytes *h
     TRY(append_promise(ctx, "One piece", m->object.one_piece, html));
     TRY(append_promise(ctx, "Nothing below the printer's widths", printable, html));
     if (set->make.solid) TRY(append_promise(ctx, "A closed, manifold solid", m->object.closed, html));
+    if (set->make.structure) TRY(append_promise(ctx, "Sound under the load", sound_of(m), html));
     TRY(bytes_print(ctx, html, "</ul>"));
     if (!set->make.solid) goto done;
     if (set->surface) {

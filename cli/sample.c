@@ -24,9 +24,15 @@ jali_status run_list(jali_context *ctx, const settings *set)
     } else if (strcmp(set->operand, "surfaces") == 0) {
         const jali_surface_info *info = jali_surface_list(&count);
         for (int32_t i = 0; i < count; i++) printf("%-14s %s\n", info[i].name, info[i].what);
+    } else if (strcmp(set->operand, "materials") == 0) {
+        const jali_material *material = jali_material_list(&count);
+        for (int32_t i = 0; i < count; i++)
+            printf("%-10s E %6g MPa, nu %.2f, %5.2f g/cm3, limit %5g MPa: %s\n", material[i].name,
+                   material[i].e_mpa, material[i].nu, material[i].density_g_cm3, material[i].limit_mpa,
+                   material[i].source);
     } else {
-        return fail(ctx, JALI_BAD_VALUE, "there is no list of \"%.40s\"; there are samples and surfaces",
-                    set->operand);
+        return fail(ctx, JALI_BAD_VALUE,
+                    "there is no list of \"%.40s\"; there are samples, surfaces and materials", set->operand);
     }
     return JALI_OK;
 }

@@ -1,7 +1,7 @@
 // The whole pipeline. Read this first.
 //
-//     picture -> threshold -> place -> optimise -> trace -> carve -> check
-//                                 \___ predict ___/
+//     picture -> threshold -> place -> optimise -> trace -> strengthen -> carve -> check
+//                                 \_______ predict ________/
 //
 // A plate is carved from its contours; a surface is hollowed out first, then each picture is pierced through
 // the wall, then the wall becomes a solid.
@@ -14,8 +14,8 @@
 
 const char *jali_stage_name(int32_t stage)
 {
-    static const char *const name[JALI_STAGES] = {"threshold", "place", "optimise", "predict",
-                                                  "trace",     "carve", "check"};
+    static const char *const name[JALI_STAGES] = {"threshold", "place",      "optimise", "predict",
+                                                  "trace",     "strengthen", "carve",    "check"};
     return stage >= 0 && stage < JALI_STAGES ? name[stage] : "";
 }
 
@@ -26,6 +26,7 @@ jali_options jali_defaults(void)
                         .optimise = jali_optimise_defaults(),
                         .trace = jali_trace_defaults(),
                         .carve = jali_carve_defaults(),
+                        .strengthen = jali_strengthen_defaults(),
                         .predict = true,
                         .recall = true,
                         .solid = true,
@@ -44,6 +45,7 @@ void jali_result_free(jali_context *ctx, jali_result *result)
     jali_prediction_free(ctx, &result->result_print);
     jali_contours_free(ctx, &result->contours);
     jali_mesh_free(ctx, &result->mesh);
+    jali_strength_free(ctx, &result->strength);
     *result = (jali_result){0};
 }
 
@@ -167,6 +169,7 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     jali_bitmap drawing = {0};
     jali_picture row = {0};
     jali_place_options place = opt->place;
+    jali_wall wall = {.plate = shell ? NULL : &opt->carve, .shell = shell, .patch = patch};
     double begun = now_seconds();
     if (opt->repeat > 1) {
         TRY(repeated(ctx, picture, opt->repeat, &row));
@@ -183,11 +186,15 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     lap(r->seconds, JALI_STAGE_PLACE, &begun);
     TRY(jali_optimise(ctx, &drawing, &r->chart, &opt->optimise, &r->optimised));
     lap(r->seconds, JALI_STAGE_OPTIMISE, &begun);
+    if (opt->solid) TRY(jali_trace(ctx, &r->optimised.mask, &r->chart, &opt->trace, outline));
+    lap(r->seconds, JALI_STAGE_TRACE, &begun);
+    if (opt->solid && opt->structure)
+        TRY(jali_strengthen(ctx, &r->chart, &wall, &opt->optimise, &opt->trace, &opt->strengthen,
+                            &r->optimised, outline, &r->strength));
+    lap(r->seconds, JALI_STAGE_STRENGTHEN, &begun);
     if (opt->predict) TRY(predict(ctx, opt, r));
     TRY(judge_mask(ctx, opt, r));
     lap(r->seconds, JALI_STAGE_PREDICT, &begun);
-    if (opt->solid) TRY(jali_trace(ctx, &r->optimised.mask, &r->chart, &opt->trace, outline));
-    lap(r->seconds, JALI_STAGE_TRACE, &begun);
 done:
     jali_bitmap_free(ctx, &drawing);
     jali_picture_free(ctx, &row);

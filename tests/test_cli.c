@@ -112,7 +112,7 @@ TEST(usage_is_checked_before_anything_is_done)
     run("sample girih -o a.png --size 5", 2, "16 .. 32768 px");
     run("sample girih -o a.png --quiet=3", 2, "takes no value");
     run("sample lion -o a.png", 2, "there are girih");
-    run("list socks", 2, "there are samples and surfaces");
+    run("list socks", 2, "samples, surfaces and materials");
     CHECK(access("a.png", F_OK) != 0);
 }
 
@@ -246,6 +246,42 @@ TEST(a_picture_is_carved)
     char json[TEXT_BYTES];
     read_text("rings.json", json);
     CHECK(strstr(json, "\"one_piece\": true") && strstr(json, "\"self_intersections\": 0"));
+}
+
+TEST(a_picture_is_made_strong)
+{
+    char json[TEXT_BYTES];
+    write_sample();
+    run("carve rings.png -o held.3mf --width 30 --force 3 --across 2 --json held.json --report held.html "
+        "--map held.png "
+        "--displacement-map held.vtu",
+        0, "largest stress");
+    read_text("held.json", json);
+    CHECK(strstr(json, "\"sound\": true") && strstr(json, "\"max_stress_mpa\"") &&
+          strstr(json, "\"name\": \"pla\""));
+    run("analyse rings.png --width 30 --force 3000 --across 2 --json broken.json --map broken.ply -q", 3,
+        "does not bear the load");
+    read_text("broken.json", json);
+    CHECK(strstr(json, "\"sound\": false") && strstr(json, "\"load_share\"") && !strstr(json, "nan"));
+    run("carve rings.png -o light.3mf --width 30 --force 3000 --no-structure", 0, "closed and manifold");
+    run("list materials", 0, "");
+    CHECK(strstr(printed, "petg") && strstr(printed, "MPa"));
+}
+
+TEST(bad_loads_get_a_sentence)
+{
+    write_sample();
+    run("analyse rings.png --width 30", 2, "no load");
+    run("analyse rings.png --width 30 --force nan", 2, "--force takes a number");
+    run("analyse rings.png --width 30 --force 1 --pressure 1", 2, "two ways to say one thing");
+    run("analyse rings.png --width 30 --force 1 --thickness 0", 2, "--thickness must be");
+    run("analyse rings.png --width 30 --force 1 --material cheese", 2, "petg");
+    run("analyse rings.png --width 30 --push 1,2,3", 2, "--push takes a place and a force");
+    run("analyse rings.png --width 30 --force 1 --support left", 2, "picture, rim or base");
+    run("analyse rings.png --width 30 --force 1 --support base", 1, "not at its base");
+    run("analyse rings.png --width 30 --force 1 --map stress.jpg", 2, "a map is a .png, .ply or .vtu");
+    run("adapt rings.png -o mask2.png --force 1", 2, "not an option of jali adapt");
+    CHECK(access("stress.jpg", F_OK) != 0);
 }
 
 TEST(a_picture_is_adapted)
@@ -443,6 +479,8 @@ int main(void)
         cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),
         cmocka_unit_test(pictures_are_carved_through_a_surface),
         cmocka_unit_test(a_picture_is_carved),
+        cmocka_unit_test(a_picture_is_made_strong),
+        cmocka_unit_test(bad_loads_get_a_sentence),
         cmocka_unit_test(a_picture_is_adapted),
         cmocka_unit_test(threads_do_not_change_a_file),
         cmocka_unit_test(a_picture_that_cannot_be_carved_is_a_sentence),

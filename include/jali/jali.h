@@ -12,6 +12,7 @@
 #define JALI_JALI_H
 
 #include <jali/adapt.h>
+#include <jali/analyse.h>
 #include <jali/base.h>
 #include <jali/bitmap.h>
 #include <jali/bridges.h>
@@ -22,6 +23,7 @@
 #include <jali/compensate.h>
 #include <jali/connect.h>
 #include <jali/contours.h>
+#include <jali/map.h>
 #include <jali/mesh.h>
 #include <jali/model.h>
 #include <jali/optimise.h>
@@ -29,10 +31,12 @@
 #include <jali/png.h>
 #include <jali/predict.h>
 #include <jali/read.h>
+#include <jali/reinforce.h>
 #include <jali/render.h>
 #include <jali/sample.h>
 #include <jali/sheet.h>
 #include <jali/shell.h>
+#include <jali/strengthen.h>
 #include <jali/surface.h>
 #include <jali/trace.h>
 #include <jali/write.h>
@@ -48,6 +52,7 @@ enum {
     JALI_STAGE_OPTIMISE,
     JALI_STAGE_PREDICT,
     JALI_STAGE_TRACE,
+    JALI_STAGE_STRENGTHEN,
     JALI_STAGE_CARVE,
     JALI_STAGE_CHECK,
     JALI_STAGES
@@ -66,6 +71,8 @@ typedef struct jali_options {
     bool recall;       // with the share of fine detail that survives (default true; slower)
     bool solid;        // trace and carve too (default true); false = the image stages alone
     bool check;        // check the mesh (default true)
+    bool structure;    // analyse and reinforce; needs `solid` (default false)
+    jali_strengthen_options strengthen;
 } jali_options;
 
 /// The defaults of all stages, with a frame of 2 mm.
@@ -89,6 +96,7 @@ typedef struct jali_result {
     jali_check_report check;
     // Promises (docs/conventions.md); each says what was looked at, not what was hoped.
     bool one_piece, printable, closed;
+    jali_strength strength; // when `structure` was asked for; its `sound` is the fourth promise
     double seconds[JALI_STAGES];
 } jali_result;
 
