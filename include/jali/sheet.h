@@ -10,9 +10,10 @@
 extern "C" {
 #endif
 
-/// Where a node of a sheet lies, a bit each.
+/// Where a node of a sheet lies, a bit each. The outline of a picture that ends in void is a rim and a
+/// contour, and on the picture's boundary within half a pixel of it.
 enum {
-    JALI_BORDER_VOID = 1,    // on a contour of the picture: material on one side only
+    JALI_BORDER_VOID = 1,    // on a contour of the picture or the hanging hole: material on one side only
     JALI_BORDER_PICTURE = 2, // on the picture's boundary, where the paper holds the model
     JALI_BORDER_RIM = 4      // on the outline of a plate, or on an open border of a surface
 };
@@ -39,7 +40,8 @@ typedef struct jali_sheet_options {
 
 JALI_API jali_sheet_options jali_sheet_defaults(void);
 
-/// The sheet of a plate, at z = half its thickness.
+/// The sheet of a plate, at z = half its thickness. Clipped to the picture it may fall into pieces: all stay.
+/// Points of contours nearer than phi_s / across / 8 to the one before are dropped.
 ///   in     plate     contours from jali_plate (outline, holes, picture)
 ///          opt       NULL means the defaults
 ///   out    sheet     free with jali_sheet_free; coordinates as in jali_carve's mesh
@@ -50,9 +52,14 @@ JALI_API jali_sheet_options jali_sheet_defaults(void);
 JALI_API jali_status jali_sheet_plate(jali_context *ctx, const jali_contours *plate, const jali_chart *chart,
                                       double thickness_mm, const jali_sheet_options *opt, jali_sheet *sheet);
 
-/// The sheet of a picture on a surface.
+/// The sheet of a picture on a surface, halfway between the skins. Creases of the surface are cut; walls less
+/// than half solid are left out. With `whole` the other triangles of the surface are joined to it node by
+/// node.
 ///   in     picture   as for jali_pierce
 ///          shell     before this picture is pierced
+///          opt       NULL means the defaults
+///   out    sheet     free with jali_sheet_free
+///   fails  as jali_sheet_plate, and JALI_NO_RESULT (the picture reaches beyond the surface: where)
 JALI_API jali_status jali_sheet_shell(jali_context *ctx, const jali_contours *picture,
                                       const jali_chart *chart, const jali_patch *patch,
                                       const jali_shell *shell, const jali_sheet_options *opt,
