@@ -118,13 +118,12 @@ static double largest(const plate *p, double (*u)[NODE_UNKNOWNS], double (*less)
     return most;
 }
 
-// Attach a strip; nodes that the rest uses as well are its ends.
-static jali_status attach_strip(jali_context *ctx, attachments *a, const plate *p, int32_t b,
-                                const bool *in_rest, int32_t *number, int32_t *rank)
+// A strip as a bridge; nodes that the rest uses as well are its ends. In the arena.
+static jali_status draw_strip(jali_context *ctx, const plate *p, int32_t b, const bool *in_rest,
+                              int32_t *number, bridge *drawn)
 {
     jali_status status;
-    arena_mark mark = arena_here(ctx);
-    int32_t count = p->first[b + 1] - p->first[b], name, *end, (*triangle)[3];
+    int32_t count = p->first[b + 1] - p->first[b], *end, (*triangle)[3];
     double(*own)[3], *thickness;
     bridge d = {.triangle_count = count};
     TRY(ARENA(ctx, end, 3 * count));
@@ -149,10 +148,8 @@ static jali_status attach_strip(jali_context *ctx, attachments *a, const plate *
     d.own = (const double(*)[3])own;
     d.thickness_mm = thickness;
     d.triangle = (const int32_t(*)[3])triangle;
-    TRY(attach(ctx, a, &d, &name));
-    *rank += d.end_count * node_width(a->s);
+    *drawn = d;
 done:
-    arena_rewind(ctx, mark);
     return status;
 }
 
@@ -164,15 +161,22 @@ static jali_status measure_round(jali_context *ctx, structure *s, plate *p)
     attachments a;
     structure joined = {0};
     bool *in_rest;
-    int32_t *number, nodes = p->whole.node_count, rank = 0;
+    int32_t *number, nodes = p->whole.node_count, name;
+    bridge drawn[BRIDGES];
+    double change[BRIDGES];
     attachments_begin(&a, s, 1);
     TRY(ARENA(ctx, in_rest, nodes));
     TRY(ARENA(ctx, number, nodes));
     memset(in_rest, 0, (size_t)nodes * sizeof *in_rest);
     for (int32_t i = 0; i < nodes; i++) number[i] = -1;
     for (int32_t i = 0; i < 3 * p->rest.triangle_count; i++) in_rest[p->rest.triangle[i / 3][i % 3]] = true;
+    for (int32_t b = 0; b < BRIDGES; b++) TRY(draw_strip(ctx, p, b, in_rest, number, &drawn[b]));
     double begin = cpu_seconds(), wall = wall_seconds();
-    for (int32_t b = 0; b < BRIDGES; b++) TRY(attach_strip(ctx, &a, p, b, in_rest, number, &rank));
+    TRY(bridges_worth(ctx, &a, BRIDGES, drawn, 0, (const double(*)[NODE_UNKNOWNS])p->u,
+                      (const double(*)[NODE_UNKNOWNS])p->u, change));
+    double judged = cpu_seconds() - begin;
+    begin = cpu_seconds(), wall = wall_seconds();
+    for (int32_t b = 0; b < BRIDGES; b++) TRY(attach(ctx, &a, &drawn[b], &name));
     TRY(attached_solve(ctx, &a, 1, (const double(*)[NODE_UNKNOWNS])p->load,
                        (const double(*)[NODE_UNKNOWNS])p->u, true, p->joined));
     double round = cpu_seconds() - begin, round_wall = wall_seconds() - wall;
@@ -182,9 +186,9 @@ static jali_status measure_round(jali_context *ctx, structure *s, plate *p)
     double refactor = cpu_seconds() - begin, refactor_wall = wall_seconds() - wall;
     printf("          %d bridges, rank %d: %.2f s (wall %.2f), a factor of the joined sheet %.2f (%.2f): "
            "ratio 1/%.1f, "
-           "apart by %.0e\n",
-           BRIDGES, rank, round, round_wall, refactor, refactor_wall, refactor / round,
-           largest(p, p->joined, p->again) / largest(p, p->again, NULL));
+           "apart by %.0e; a candidate is judged in %.0f ms\n",
+           BRIDGES, a.rank, round, round_wall, refactor, refactor_wall, refactor / round,
+           largest(p, p->joined, p->again) / largest(p, p->again, NULL), 1e3 * judged / BRIDGES);
 done:
     attachments_free(ctx, &a);
     structure_free(ctx, &joined);
