@@ -110,7 +110,7 @@ static inline double beam_of_parallelograms(jali_context *with, int32_t n, stiff
     return straight_beam(with, n, element, PARALLELOGRAMS, (int)axis);
 }
 
-// Raasch's hook: two arcs, 20 wide; unit force across at the tip. 2 n along each 30 degrees.
+// Raasch's hook: two arcs, 20 wide; unit force across at the tip. n cells along each 30 degrees.
 static inline double raasch_hook(jali_context *with, int32_t n, stiffness_of *element, double nothing)
 {
     (void)nothing;
