@@ -12,6 +12,9 @@ for name in tree girih; do
     "$jali" carve "$out/$name.png" --width 70 --corner 3 --quiet --force-overwrite --no-predict \
         -o "$out/$name-plate.png" --render "$out/$name-solid.png" --size 400
 done
+"$jali" analyse "$out/tree.png" --width 60 --force 20 --quiet --force-overwrite --map "$out/tree-stress-before.png" || test $? = 3
+"$jali" carve "$out/tree.png" --width 60 --force 20 --quiet --no-predict -o "$work/strong.stl" --force-overwrite \
+    --map "$out/tree-stress.png"
 "$jali" carve "$out/girih.png" --surface vase:h=120 --repeat 3 --frame 0 --quiet --no-predict -o "$work/vase.stl"
 for light in "" --lamp; do
     "$jali" render "$work/vase.stl" $light --view 0,1,-0.3 --size 560 --quiet --force-overwrite \
