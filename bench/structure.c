@@ -6,7 +6,7 @@
 #include "calculix.h"
 #include "sheets.h"
 
-#include "analyse/attach.h"
+#include "structure/attach.h"
 
 #include <stdio.h>
 #include <stdlib.h>

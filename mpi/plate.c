@@ -6,7 +6,7 @@
 // RADIUS 0 is a flat plate, of which 3 unknowns a node are solved for; else a bent one, of 6.
 #include "sheets.h"
 
-#include "analyse/assemble.h"
+#include "structure/assemble.h"
 
 #include <stdio.h>
 #include <stdlib.h>

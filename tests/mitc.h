@@ -6,7 +6,7 @@
 #ifndef TESTS_MITC_H
 #define TESTS_MITC_H
 
-#include "analyse/modes.h"
+#include "structure/modes.h"
 
 // Covariant shear strains rt, st at (r, s): from 11 unknowns, (w, rotation x, rotation y) of three nodes,
 // then the bubble's rotations.

@@ -3,8 +3,8 @@
 #ifndef TESTS_SHELL_MODEL_H
 #define TESTS_SHELL_MODEL_H
 
-#include "analyse/element.h"
-#include "analyse/recover.h"
+#include "structure/element.h"
+#include "structure/recover.h"
 #include "sparse/solver.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 
 #include "sheets.h"
 
-#include "analyse/attach.h"
+#include "structure/attach.h"
 
 static const facet_material plastic = {.e_mpa = 2300, .nu = 0.35};
 

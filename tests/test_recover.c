@@ -1,7 +1,7 @@
 // Stresses at nodes: constant states, creases and steps, discs, bad input.
 #include "testing.h"
 #include "shell_model.h"
-#include "analyse/average.h"
+#include "structure/average.h"
 
 static const facet_material PLASTIC = {.e_mpa = 2300, .nu = 0.35, .thickness_mm = 1.5};
 

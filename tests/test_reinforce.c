@@ -1,8 +1,8 @@
 // reinforce: spans across voids of a known width, planks that fit, gradients against differences, what a
 // ranking foretells against what comes out, and searches that end.
 #include "testing.h"
-#include "analyse/attach.h"
-#include "analyse/stiffness.h"
+#include "structure/attach.h"
+#include "structure/stiffness.h"
 #include "reinforce/hotspots.h"
 #include "reinforce/plank.h"
 #include "reinforce/rank.h"

@@ -3,7 +3,7 @@
 
 #include "sheets.h"
 
-#include "analyse/assemble.h"
+#include "structure/assemble.h"
 
 static const facet_material plastic = {.e_mpa = 2300, .nu = 0.35};
 

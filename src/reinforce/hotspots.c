@@ -4,7 +4,7 @@
 // von Mises of a face is differentiated by hand. The worse face is the one that is worse now. Checked:
 // tests/test_reinforce.c: against differences.
 #include "reinforce/hotspots.h"
-#include "analyse/element.h"
+#include "structure/element.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #ifndef REINFORCE_RANK_H
 #define REINFORCE_RANK_H
 
-#include "analyse/assemble.h"
+#include "structure/assemble.h"
 #include "reinforce/beam.h"
 #include "reinforce/hotspots.h"
 

@@ -6,12 +6,13 @@
 // How:     a round finds the hot spots and what their stress depends on (one solution each), ranks the ways
 // across
 //          voids by what a connector there would do (rank.c), attaches the best of them as elements to the
-//          factorised stiffness (analyse/attach.h) and looks at the stresses anew. At the end connectors
+//          factorised stiffness (structure/attach.h) and looks at the stresses anew. At the end connectors
 //          whose absence would do no harm are withdrawn.
 // Ends:    rounds are counted; each adds a connector or is the last.
 // Checked: tests/test_reinforce.c
-#include "analyse/attach.h"
-#include "analyse/stiffness.h"
+#include "structure/attach.h"
+#include "structure/loads.h"
+#include "structure/stiffness.h"
 #include "reinforce/plank.h"
 #include "reinforce/rank.h"
 
@@ -75,20 +76,6 @@ static const jali_analyse_options *analysed_as(const search *s)
 
 // --- With the connectors there are
 
-static jali_status room_for_results(jali_context *ctx, int32_t nodes, jali_analysis *a)
-{
-    jali_status status;
-    jali_analysis_free(ctx, a);
-    a->node_count = nodes;
-    TRY(ALLOCATE_CLEARED(ctx, a->displacement, nodes));
-    TRY(ALLOCATE(ctx, a->face_mpa, nodes));
-    TRY(ALLOCATE(ctx, a->principal_mpa, nodes));
-    TRY(ALLOCATE(ctx, a->raw_mpa, nodes));
-    TRY(ALLOCATE(ctx, a->mean_mpa, nodes));
-done:
-    return status;
-}
-
 static jali_status join(jali_context *ctx, search *s)
 {
     jali_status status;
@@ -135,19 +122,14 @@ static jali_status record(jali_context *ctx, search *s, jali_reinforcement *r)
 // The load that a plank carries, by its own nodes.
 static jali_status plank_load(jali_context *ctx, const search *s, const plank *p, double (**load)[6])
 {
-    jali_status status;
     jali_sheet sheet = {.node_count = p->node_count,
                         .triangle_count = p->triangle_count,
                         .node = p->node,
                         .thickness_mm = p->thickness_mm,
-                        .triangle = p->triangle};
-    double(*force)[3] = NULL;
-    TRY(ALLOCATE_CLEARED(ctx, force, p->node_count));
-    TRY(ALLOCATE_CLEARED(ctx, *load, p->node_count));
-    carried_load(&sheet, analysed_as(s), s->analysis->pressure_mpa, force);
-    for (int32_t i = 0; i < p->node_count; i++) memcpy((*load)[i], force[i], sizeof force[i]);
-done:
-    release(ctx, force);
+                        .triangle = p->triangle,
+                        .flat = s->sheet->flat};
+    jali_status status = ALLOCATE_CLEARED(ctx, *load, p->node_count);
+    if (status == JALI_OK) carried_load(&sheet, analysed_as(s), s->analysis->pressure_mpa, *load);
     return status;
 }
 

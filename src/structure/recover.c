@@ -1,0 +1,307 @@
+// Stresses at the nodes of a sheet: patches of triangles, fitted and read at the node.
+//
+// Source:  O. C. Zienkiewicz, J. Z. Zhu, The superconvergent patch recovery and a posteriori error estimates,
+//          Int. J. Numer. Meth. Engng 33 (1992) 1331-1364.
+// How:     The resultants of a facet are best at its centroid. Around each node those of the two rings of
+//          triangles next to it, turned into the node's tangent plane, are fitted by a plane (weighted least
+//          squares) and read where the node is: inside that is an average; at a contour, where the maxima
+//          are, it extrapolates. Around a hole with 16 triangles a quarter it gives 0.97 of Kirsch's 3.0
+//          where the mean of the corners gives 0.89, with 32 it gives 1.00 and 0.94. A patch ends at creases
+//          and steps of thickness (fans.c); a node there has a value on each side, and reports the worst.
+// Limits:  at re-entrant corners the stress has no limit, so that `worst` grows with refinement; `mean` does
+//          not. Principal stresses are given on the faces, not in the middle.
+// Checked: tests/test_recover.c, tests/test_published.c.
+#include "structure/recover.h"
+#include "structure/average.h"
+
+#include <math.h>
+
+enum { BLOCK = 512, MOST_IN_PATCH = 96, FIELDS = 8 };
+static const double FLATTEN =
+    1e-3;                     // of a patch's spread: holds the slopes of patches of one or two triangles
+static const double NEAR = 2; // weight 1 / (NEAR + squared distance in sides): nearer triangles tell more
+
+typedef struct triangle_state {
+    double frame[3][3], centroid[3], area;
+    double value[FIELDS]; // n, m, q at the centroid
+} triangle_state;
+
+typedef struct recovering {
+    const jali_sheet *sheet;
+    const facet_material *made_of;
+    const double (*u)[6];
+    triangle_state *state; // [triangle_count]
+    double (*normal)[3];   // [triangle_count]
+    double *thickness;     // [triangle_count]
+    fans fans;
+    double *worst; // [fan_count]
+    double radius_mm;
+    stresses *out;
+} recovering;
+
+void stresses_free(jali_context *ctx, stresses *s)
+{
+    release(ctx, s->von_mises);
+    release(ctx, s->principal);
+    release(ctx, s->worst);
+    release(ctx, s->mean);
+    *s = (stresses){.worst_at = -1, .mean_at = -1};
+}
+
+static void evaluate_block(void *shared, int32_t block)
+{
+    recovering *r = shared;
+    const jali_sheet *sheet = r->sheet;
+    for (int32_t t = block * BLOCK; t < MIN((block + 1) * BLOCK, sheet->triangle_count); t++) {
+        triangle_state *s = &r->state[t];
+        double at[3][3], u[18];
+        resultants corner[3];
+        facet_material made_of = *r->made_of;
+        made_of.thickness_mm = 0;
+        for (int i = 0; i < 3; i++) {
+            int32_t n = sheet->triangle[t][i];
+            memcpy(at[i], sheet->node[n], sizeof at[i]);
+            memcpy(u + 6 * i, r->u[n], 6 * sizeof *u);
+            made_of.thickness_mm += sheet->thickness_mm[n] / 3;
+        }
+        facet_resultants((const double(*)[3])at, &made_of, u, corner);
+        facet_frame((const double(*)[3])at, s->frame);
+        memcpy(r->normal[t], s->frame[2], sizeof r->normal[t]);
+        r->thickness[t] = made_of.thickness_mm;
+        s->area = 0;
+        for (int k = 0; k < 3; k++) {
+            s->centroid[k] = (at[0][k] + at[1][k] + at[2][k]) / 3;
+            s->value[k] = (corner[0].n[k] + corner[1].n[k] + corner[2].n[k]) / 3;
+            s->value[3 + k] = (corner[0].m[k] + corner[1].m[k] + corner[2].m[k]) / 3;
+        }
+        for (int k = 0; k < 2; k++) s->value[6 + k] = (corner[0].q[k] + corner[1].q[k] + corner[2].q[k]) / 3;
+        double wide = 0, high = 0;
+        for (int k = 0; k < 3; k++) {
+            wide += s->frame[0][k] * (at[1][k] - at[0][k]);
+            high += s->frame[1][k] * (at[2][k] - at[0][k]);
+        }
+        s->area = 0.5 * wide * high;
+    }
+}
+
+// The fan's triangles, then those that smooth sides join to them and that touch one of their nodes.
+static int32_t gather_patch(const recovering *r, int32_t node, int32_t fan, int32_t patch[MOST_IN_PATCH],
+                            int32_t *own_count)
+{
+    const fans *f = &r->fans;
+    int32_t count = 0, (*triangle)[3] = r->sheet->triangle;
+    for (int32_t i = f->first[node]; i < f->first[node + 1] && count < MOST_IN_PATCH; i++)
+        if (f->fan[f->corner[i]] == fan) patch[count++] = f->corner[i] / 3;
+    *own_count = count;
+    for (int32_t i = 0; i < count; i++)
+        for (int side = 0; side < 3; side++) {
+            int32_t next = f->beside[3 * patch[i] + side];
+            if (next < 0 || !f->smooth[3 * patch[i] + side] || count == MOST_IN_PATCH) continue;
+            bool known = false, touches = false;
+            for (int32_t j = 0; j < count && !known; j++) known = patch[j] == next;
+            for (int32_t j = 0; j < 3 * *own_count && !known && !touches; j++)
+                for (int k = 0; k < 3; k++) touches |= triangle[patch[j / 3]][j % 3] == triangle[next][k];
+            if (touches && !known) patch[count++] = next;
+        }
+    return count;
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// A vector of a plane with normal `from`, turned with that plane onto the one with normal `to`.
+static void turn_with(const double from[3], const double to[3], const double v[3], double out[3])
+{
+    double shift = dot(v, to) / (1 + dot(from, to));
+    for (int k = 0; k < 3; k++) out[k] = v[k] - shift * (from[k] + to[k]);
+}
+
+// Axes at a node: z the mean normal of its own triangles, x as in the first of them.
+static void node_frame(const recovering *r, const int32_t *patch, int32_t own_count, double frame[3][3])
+{
+    double *x = frame[0], *y = frame[1], *z = frame[2];
+    memset(frame, 0, 3 * sizeof *frame);
+    for (int32_t i = 0; i < own_count; i++) {
+        const triangle_state *s = &r->state[patch[i]];
+        for (int k = 0; k < 3; k++) z[k] += s->area * s->frame[2][k];
+    }
+    double length = sqrt(dot(z, z));
+    for (int k = 0; k < 3; k++) z[k] /= length;
+    const triangle_state *first = &r->state[patch[0]];
+    turn_with(first->frame[2], z, first->frame[0], x);
+    for (int k = 0; k < 3; k++) y[k] = z[(k + 1) % 3] * x[(k + 2) % 3] - z[(k + 2) % 3] * x[(k + 1) % 3];
+}
+
+// A triangle's resultants in a node's axes.
+static void turned_values(const triangle_state *s, const double frame[3][3], double value[FIELDS])
+{
+    double x[3];
+    turn_with(s->frame[2], frame[2], s->frame[0], x);
+    double c = dot(x, frame[0]), d = dot(x, frame[1]);
+    for (int k = 0; k < 6; k += 3) {
+        const double *v = s->value + k;
+        value[k] = c * c * v[0] + d * d * v[1] - 2 * c * d * v[2];
+        value[k + 1] = d * d * v[0] + c * c * v[1] + 2 * c * d * v[2];
+        value[k + 2] = c * d * (v[0] - v[1]) + (c * c - d * d) * v[2];
+    }
+    value[6] = c * s->value[6] - d * s->value[7];
+    value[7] = d * s->value[6] + c * s->value[7];
+}
+
+// How much each triangle of a patch counts for the fitted plane at the node: they sum to 1.
+static void fit_shares(const recovering *r, const double at[3], const double frame[3][3],
+                       const int32_t *patch, int32_t own_count, int32_t count, double share[MOST_IN_PATCH])
+{
+    double place[MOST_IN_PATCH][2], scale = 0, sum[6] = {0}; // 1, x, y, xx, xy, yy
+    for (int32_t i = 0; i < count; i++) {
+        double d[3];
+        for (int k = 0; k < 3; k++) d[k] = r->state[patch[i]].centroid[k] - at[k];
+        place[i][0] = dot(d, frame[0]);
+        place[i][1] = dot(d, frame[1]);
+        if (i < own_count) scale += dot(d, d) / own_count;
+    }
+    for (int32_t i = 0; i < count; i++) {
+        double x = place[i][0] /= sqrt(scale), y = place[i][1] /= sqrt(scale);
+        double w = share[i] = r->state[patch[i]].area / (NEAR + x * x + y * y);
+        const double term[6] = {1, x, y, x * x, x * y, y * y};
+        for (int k = 0; k < 6; k++) sum[k] += w * term[k];
+    }
+    // About the mean place: the plane's height at the node is the mean plus the slopes times the way to it.
+    double mx = sum[1] / sum[0], my = sum[2] / sum[0];
+    double xx = sum[3] / sum[0] - mx * mx, xy = sum[4] / sum[0] - mx * my, yy = sum[5] / sum[0] - my * my;
+    xx += FLATTEN;
+    yy += FLATTEN;
+    double det = xx * yy - xy * xy, gx = -(yy * mx - xy * my) / det, gy = -(xx * my - xy * mx) / det;
+    for (int32_t i = 0; i < count; i++)
+        share[i] *= (1 + gx * (place[i][0] - mx) + gy * (place[i][1] - my)) / sum[0];
+}
+
+// The thickness at a node: its own, unless it lies on a step, where each fan has that of its triangles.
+static double thickness_at(const recovering *r, int32_t node, const int32_t *patch, int32_t own_count)
+{
+    const fans *f = &r->fans;
+    if (f->first_fan[node + 1] - f->first_fan[node] == 1) return r->sheet->thickness_mm[node];
+    double sum = 0, area = 0, most = 0, least = INFINITY;
+    for (int32_t i = f->first[node]; i < f->first[node + 1]; i++) {
+        most = MAX(most, r->thickness[f->corner[i] / 3]);
+        least = MIN(least, r->thickness[f->corner[i] / 3]);
+    }
+    if (most <= 1.1 * least) return r->sheet->thickness_mm[node];
+    for (int32_t i = 0; i < own_count; i++) {
+        sum += r->state[patch[i]].area * r->thickness[patch[i]];
+        area += r->state[patch[i]].area;
+    }
+    return sum / area;
+}
+
+static void read_layers(const double v[FIELDS], double t, double layer[LAYERS], double principal[2][2])
+{
+    for (int l = 0; l < LAYERS; l++) {
+        double bend = l == OUTER_FACE ? 6 / (t * t) : l == INNER_FACE ? -6 / (t * t) : 0, square = 0;
+        double x = v[0] / t + bend * v[3], y = v[1] / t + bend * v[4], xy = v[2] / t + bend * v[5];
+        if (l == MIDDLE) square = 2.25 * (v[6] * v[6] + v[7] * v[7]) / (t * t);
+        layer[l] = sqrt(x * x + y * y - x * y + 3 * (xy * xy + square));
+        if (l == MIDDLE) continue;
+        double half = hypot(0.5 * (x - y), xy);
+        principal[l == INNER_FACE][0] = 0.5 * (x + y) + half;
+        principal[l == INNER_FACE][1] = 0.5 * (x + y) - half;
+    }
+}
+
+static void recover_block(void *shared, int32_t block)
+{
+    recovering *r = shared;
+    const fans *f = &r->fans;
+    for (int32_t node = block * BLOCK; node < MIN((block + 1) * BLOCK, f->node_count); node++) {
+        double worst = 0;
+        for (int32_t fan = f->first_fan[node]; fan < f->first_fan[node + 1]; fan++) {
+            int32_t patch[MOST_IN_PATCH], own_count, count = gather_patch(r, node, fan, patch, &own_count);
+            double frame[3][3], share[MOST_IN_PATCH], v[FIELDS] = {0}, turned[FIELDS];
+            node_frame(r, patch, own_count, frame);
+            fit_shares(r, r->sheet->node[node], (const double(*)[3])frame, patch, own_count, count, share);
+            for (int32_t i = 0; i < count; i++) {
+                turned_values(&r->state[patch[i]], (const double(*)[3])frame, turned);
+                for (int k = 0; k < FIELDS; k++) v[k] += share[i] * turned[k];
+            }
+            double layer[LAYERS], principal[2][2];
+            read_layers(v, thickness_at(r, node, patch, own_count), layer, principal);
+            r->worst[fan] = MAX(MAX(layer[OUTER_FACE], layer[INNER_FACE]), layer[MIDDLE]);
+            if (fan > f->first_fan[node] && r->worst[fan] <= worst) continue;
+            worst = r->worst[fan];
+            memcpy(r->out->von_mises[node], layer, sizeof layer);
+            memcpy(r->out->principal[node], principal, sizeof principal);
+        }
+        r->out->worst[node] = worst;
+    }
+}
+
+static void average_block(void *shared, int32_t block)
+{
+    recovering *r = shared;
+    for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, r->fans.node_count); n++)
+        r->out->mean[n] =
+            r->radius_mm > 0 ? mean_around(r->sheet, &r->fans, r->worst, n, r->radius_mm) : r->out->worst[n];
+}
+
+static void find_largest(stresses *s)
+{
+    for (int32_t n = 0; n < s->node_count; n++) {
+        if (s->worst[n] > s->worst_mpa || s->worst_at < 0) s->worst_mpa = s->worst[s->worst_at = n];
+        if (s->mean[n] > s->mean_mpa || s->mean_at < 0) s->mean_mpa = s->mean[s->mean_at = n];
+    }
+}
+
+static jali_status check_input(jali_context *ctx, const jali_sheet *sheet, const double (*u)[6],
+                               double disc_mm)
+{
+    if (!(disc_mm >= 0) || !isfinite(disc_mm))
+        return fail(ctx, JALI_BAD_VALUE, "a disc of %g mm to average stresses over; it must be 0 or more",
+                    disc_mm);
+    for (int32_t n = 0; n < sheet->node_count; n++) {
+        if (!(sheet->thickness_mm[n] > 0))
+            return fail(ctx, JALI_BAD_VALUE,
+                        "the wall is %g mm thick at (%.2f, %.2f, %.2f) mm; it must be more than 0",
+                        sheet->thickness_mm[n], sheet->node[n][0], sheet->node[n][1], sheet->node[n][2]);
+        for (int k = 0; k < 6; k++)
+            if (!isfinite(u[n][k]))
+                return fail(ctx, JALI_NO_RESULT, "the displacement at (%.2f, %.2f, %.2f) mm is no number",
+                            sheet->node[n][0], sheet->node[n][1], sheet->node[n][2]);
+    }
+    return JALI_OK;
+}
+
+jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
+                             const double (*u)[6], double disc_mm, stresses *s)
+{
+    jali_status status;
+    size_t nodes = (size_t)sheet->node_count, triangles = (size_t)sheet->triangle_count;
+    int32_t node_blocks = (sheet->node_count + BLOCK - 1) / BLOCK;
+    recovering r = {.sheet = sheet, .made_of = made_of, .u = u, .radius_mm = 0.5 * disc_mm, .out = s};
+    *s = (stresses){.node_count = sheet->node_count, .worst_at = -1, .mean_at = -1};
+    TRY(check_input(ctx, sheet, u, disc_mm));
+    TRY(ALLOCATE_CLEARED(ctx, s->von_mises, nodes));
+    TRY(ALLOCATE_CLEARED(ctx, s->principal, nodes));
+    TRY(ALLOCATE_CLEARED(ctx, s->worst, nodes));
+    TRY(ALLOCATE_CLEARED(ctx, s->mean, nodes));
+    TRY(ALLOCATE(ctx, r.state, triangles));
+    TRY(ALLOCATE(ctx, r.normal, triangles));
+    TRY(ALLOCATE(ctx, r.thickness, triangles));
+    parallel(ctx, (sheet->triangle_count + BLOCK - 1) / BLOCK, evaluate_block, &r);
+    TRY(step(ctx, "stress", 0.3));
+    TRY(fans_of(ctx, sheet, (const double(*)[3])r.normal, r.thickness, &r.fans));
+    TRY(ALLOCATE(ctx, r.worst, r.fans.fan_count));
+    parallel(ctx, node_blocks, recover_block, &r);
+    TRY(step(ctx, "stress", 0.7));
+    parallel(ctx, node_blocks, average_block, &r);
+    find_largest(s);
+done:
+    release(ctx, r.state);
+    release(ctx, r.normal);
+    release(ctx, r.thickness);
+    release(ctx, r.worst);
+    fans_free(ctx, &r.fans);
+    if (status != JALI_OK) stresses_free(ctx, s);
+    return status;
+}
