@@ -141,26 +141,32 @@ done:
     return status;
 }
 
-// The sheet as a solid, bent so that the largest displacement is a twentieth of its size.
-static jali_status append_solid(jali_context *ctx, const settings *set, const jali_strength *s,
-                                const jali_map_options *opt, jali_bytes *html)
+// How many times a displacement must be drawn to be a twentieth of the sheet's size.
+static double exaggeration_of(const jali_sheet *sheet, const jali_analysis *a)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
+    for (int32_t i = 0; i < sheet->node_count; i++)
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], sheet->node[i][k]);
+            high[k] = fmax(high[k], sheet->node[i][k]);
+        }
+    for (int k = 0; k < 3; k++) size = fmax(size, high[k] - low[k]);
+    return a->moved.value > 0 ? size / 20 / a->moved.value : 0;
+}
+
+// The sheet as a solid, bent.
+static jali_status append_solid(jali_context *ctx, const settings *set, const jali_sheet *sheet,
+                                const jali_analysis *a, const jali_map_options *opt, double times,
+                                const char *what, jali_bytes *html)
 {
     jali_status status;
     jali_mesh mesh = {0};
     uint8_t(*colour)[3] = NULL, *rgb = NULL;
     jali_bytes png = {0};
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
     jali_render_options view = set->view;
-    char title[80];
-    for (int32_t i = 0; i < s->sheet.node_count; i++)
-        for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], s->sheet.node[i][k]);
-            high[k] = fmax(high[k], s->sheet.node[i][k]);
-        }
-    for (int k = 0; k < 3; k++) size = fmax(size, high[k] - low[k]);
-    double times = s->analysis.moved.value > 0 ? size / 20 / s->analysis.moved.value : 0;
-    snprintf(title, sizeof title, "Stress, and how it gives way (%.3g times as far)", times);
-    TRY(jali_map_solid(ctx, &s->sheet, &s->analysis, opt, times, &mesh, &colour));
+    char title[128];
+    snprintf(title, sizeof title, "%s (%.3g times as far)", what, times);
+    TRY(jali_map_solid(ctx, sheet, a, opt, times, &mesh, &colour));
     view.width_px = view.height_px = RENDER_PX;
     view.colour = (const uint8_t(*)[3])colour;
     view.lamp = false;
@@ -206,13 +212,37 @@ done:
     return status;
 }
 
+// Both maps and the bent solid of one state; `when` ends their titles.
+static jali_status append_state(jali_context *ctx, const settings *set, const jali_result *r,
+                                const jali_sheet *sheet, const jali_analysis *a,
+                                const jali_map_options map[2], double times, const char *when,
+                                jali_bytes *html)
+{
+    jali_status status;
+    char title[3][64];
+    snprintf(title[0], sizeof title[0], "Stress%s", when);
+    snprintf(title[1], sizeof title[1], "Gives way%s", when);
+    snprintf(title[2], sizeof title[2], "Bent%s", when);
+    TRY(append_map(ctx, r, sheet, a, &map[0], title[0], html));
+    TRY(append_map(ctx, r, sheet, a, &map[1], title[1], html));
+    TRY(append_solid(ctx, set, sheet, a, &map[0], times, title[2], html));
+done:
+    return status;
+}
+
 jali_status append_structure(jali_context *ctx, const settings *set, const jali_result *r, jali_bytes *html)
 {
     jali_status status;
     const jali_strength *s = &r->strength;
     const jali_material *material = &set->make.strengthen.analyse.material;
-    jali_map_options stress = map_of(s, JALI_STRESS), moved = map_of(s, JALI_DISPLACEMENT);
+    bool changed = s->before.node_count > 0;
+    const jali_sheet *first = changed ? &s->sheet_before : &s->sheet;
+    const jali_analysis *worst = changed ? &s->before : &s->analysis;
+    jali_map_options map[2] = {map_of(s, JALI_STRESS), map_of(s, JALI_DISPLACEMENT)};
     if (!s->round_count) return JALI_OK;
+    map[0].top = fmax(worst->stress.value, s->limit_mpa); // before and after on one scale
+    map[1].top = worst->moved.value;
+    double times = exaggeration_of(first, worst);
     TRY(bytes_print(ctx, html,
                     "<h3>Strength</h3><p>%s (E %g MPa, &nu; %g), limit %g MPa; %.4g MPa of pressure on %.4g "
                     "cm<sup>2</sup>.</p>",
@@ -221,15 +251,8 @@ jali_status append_structure(jali_context *ctx, const settings *set, const jali_
     TRY(append_rounds(ctx, s, html));
     TRY(append_advice(ctx, s, html));
     TRY(bytes_print(ctx, html, "<main>\n"));
-    if (s->before.node_count) { // on one scale
-        stress.top = fmax(s->before.stress.value, s->limit_mpa);
-        moved.top = s->before.moved.value;
-        TRY(append_map(ctx, r, &s->sheet_before, &s->before, &stress, "Stress before", html));
-        TRY(append_map(ctx, r, &s->sheet_before, &s->before, &moved, "Gives way before", html));
-    }
-    TRY(append_map(ctx, r, &s->sheet, &s->analysis, &stress, "Stress", html));
-    TRY(append_map(ctx, r, &s->sheet, &s->analysis, &moved, "Gives way", html));
-    TRY(append_solid(ctx, set, s, &stress, html));
+    if (changed) TRY(append_state(ctx, set, r, first, worst, map, times, " before", html));
+    TRY(append_state(ctx, set, r, &s->sheet, &s->analysis, map, times, changed ? " after" : "", html));
     TRY(bytes_print(ctx, html, "</main>"));
 done:
     return status;
