@@ -64,6 +64,7 @@ static double top_of(const jali_analysis *a, const jali_map_options *opt)
 
 typedef struct view {
     double left, high, px; // the chart's units of the picture's upper left corner; px a unit
+    int32_t width, height; // of the picture on the canvas; the legend stands beside it
 } view;
 
 // One triangle, at the pixel centres it holds.
@@ -78,8 +79,8 @@ static void paint_triangle(canvas *c, const view *v, const int32_t *const at[3],
     }
     double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
     if (area == 0) return;
-    for (int32_t row = MAX(0, (int32_t)ceil(y0 - 0.5)); row < c->height && row + 0.5 <= y1; row++)
-        for (int32_t column = MAX(0, (int32_t)ceil(x0 - 0.5)); column < c->width && column + 0.5 <= x1;
+    for (int32_t row = MAX(0, (int32_t)ceil(y0 - 0.5)); row < v->height && row + 0.5 <= y1; row++)
+        for (int32_t column = MAX(0, (int32_t)ceil(x0 - 0.5)); column < v->width && column + 0.5 <= x1;
              column++) {
             double px = column + 0.5, py = row + 0.5, w[3], least = 1, sum = 0;
             for (int i = 0; i < 3; i++) {
@@ -166,22 +167,23 @@ jali_status jali_map_png(jali_context *ctx, const jali_sheet *sheet, const jali_
 {
     jali_status status;
     jali_map_options opt = given ? *given : jali_map_defaults();
-    canvas c = {0}, picture;
+    canvas c = {0};
     int32_t columns = chart->width_px - 2 * chart->margin_px, rows = chart->height_px - 2 * chart->margin_px;
     TRY(check_options(ctx, &opt));
     double scale = (double)opt.longer_px / MAX(columns, rows), top = top_of(a, &opt);
     int32_t width = MAX(1, (int32_t)(columns * scale)), height = MAX(1, (int32_t)(rows * scale));
     view v = {.left = (double)chart->margin_px * chart->pixel_units,
               .high = (double)(chart->height_px - chart->margin_px) * chart->pixel_units,
-              .px = scale / chart->pixel_units};
+              .px = scale / chart->pixel_units,
+              .width = width,
+              .height = height};
     c.width = width + LEGEND_PX + 4 * EDGE_PX;
     c.height = MAX(height, 160);
     TRY(step(ctx, "map", 0));
     TRY(ALLOCATE(ctx, c.rgb, 3 * (size_t)c.width * (size_t)c.height));
     for (int32_t y = 0; y < c.height; y++)
         for (int32_t x = 0; x < c.width; x++) set_pixel(&c, x, y, paper);
-    picture = c;
-    paint_sheet(&picture, &v, sheet, a, &opt, top);
+    paint_sheet(&c, &v, sheet, a, &opt, top);
     paint_legend(&c, width + 5 * EDGE_PX, c.height, &opt, top);
     TRY(jali_rgb_png(ctx, c.width, c.height, c.rgb, png));
 done:
