@@ -221,9 +221,16 @@ static jali_status measure(jali_context *ctx, stopwatch *w, int32_t cells, bool 
     TRY(measure_round(ctx, &s, &p));
     if (!bending_only && p.rest.node_count < PEER_NODES && calculix_there())
         for (int six = 0; six < 2; six++) {
-            calculix_answer c = calculix_run(&p.rest, pla.e_mpa, pla.nu, 0.01, six);
+            calculix_case peer = {.sheet = &p.rest,
+                                  .kind = six ? CALCULIX_S6 : CALCULIX_S3,
+                                  .e_mpa = pla.e_mpa,
+                                  .nu = pla.nu,
+                                  .pressure_mpa = 0.01,
+                                  .held = JALI_BORDER_RIM};
+            calculix_answer c = calculix_run(&peer);
             printf("          CalculiX S%d: %.1f s, %.1f times as long; %.6f mm\n", six ? 6 : 3, c.seconds,
                    c.seconds / (end - start), c.displacement_mm);
+            calculix_free(&c);
         }
     fflush(stdout);
 done:
