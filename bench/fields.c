@@ -3,7 +3,7 @@
 #include "calculix.h"
 #include "judge_sheet.h"
 
-#include "analyse/average.h"
+#include "structure/average.h"
 
 #include <math.h>
 #include <stdlib.h>
