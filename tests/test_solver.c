@@ -4,6 +4,7 @@
 #include "sparse/solver.h"
 
 #include <math.h>
+#include <pthread.h>
 
 static double random_in(uint64_t *seed, double low, double high)
 {
@@ -21,8 +22,11 @@ static int64_t entries_of(const block_matrix *a)
     return a->entry[a->row[a->node_count]];
 }
 
-static jali_status lay_grid(jali_context *limited, int32_t side, int32_t widest, uint64_t *seed,
-                            block_matrix *a)
+// How many unknowns a node of a grid has; NULL: none to `widest`, at random.
+typedef int32_t (*holding)(int32_t side, int32_t x, int32_t y);
+
+static jali_status lay_grid(jali_context *limited, int32_t side, int32_t widest, holding left_free,
+                            uint64_t *seed, block_matrix *a)
 {
     jali_status status;
     uint8_t *width;
@@ -33,7 +37,8 @@ static jali_status lay_grid(jali_context *limited, int32_t side, int32_t widest,
     a->row[0] = 0;
     for (int32_t i = 0; i < a->node_count; i++) {
         int64_t e = a->row[i];
-        width[i] = (uint8_t)((next_random(seed) >> 40) % (uint64_t)(widest + 1));
+        width[i] = (uint8_t)(left_free ? left_free(side, i % side, i / side)
+                                       : (int32_t)(next_random(seed) >> 40) % (widest + 1));
         if (i >= side && i % side > 0) a->column[e++] = i - side - 1;
         if (i >= side) a->column[e++] = i - side;
         if (i % side > 0) a->column[e++] = i - 1;
@@ -46,8 +51,8 @@ done:
 }
 
 // A grid of nodes with none to `widest` unknowns each; random values, and a diagonal that outweighs them.
-static jali_status make_matrix(jali_context *limited, int32_t side, int32_t widest, uint64_t seed,
-                               random_matrix *m)
+static jali_status make_held(jali_context *limited, int32_t side, int32_t widest, holding left_free,
+                             uint64_t seed, random_matrix *m)
 {
     jali_status status;
     arena_mark mark = arena_here(limited);
@@ -55,7 +60,7 @@ static jali_status make_matrix(jali_context *limited, int32_t side, int32_t wide
     double *sum;
     int64_t e = 0;
     *m = (random_matrix){0};
-    TRY(lay_grid(limited, side, widest, &seed, a));
+    TRY(lay_grid(limited, side, widest, left_free, &seed, a));
     TRY(ALLOCATE(limited, m->at, entries_of(a)));
     TRY(ARENA(limited, sum, unknowns_of(a)));
     for (int32_t i = 0; i < a->node_count; i++)
@@ -76,6 +81,12 @@ static jali_status make_matrix(jali_context *limited, int32_t side, int32_t wide
 done:
     arena_rewind(limited, mark);
     return status;
+}
+
+static jali_status make_matrix(jali_context *limited, int32_t side, int32_t widest, uint64_t seed,
+                               random_matrix *m)
+{
+    return make_held(limited, side, widest, NULL, seed, m);
 }
 
 static void matrix_free(jali_context *limited, random_matrix *m)
@@ -205,6 +216,120 @@ TEST(limits_are_kept)
     matrix_free(ctx, &m);
 }
 
+static int32_t one_free(int32_t side, int32_t x, int32_t y)
+{
+    return x == side / 2 && y == side / 2 ? 6 : 0;
+}
+
+static int32_t two_free(int32_t side, int32_t x, int32_t y)
+{
+    return y == side / 2 && (x == side / 2 || x == side / 2 + 1) ? 3 : 0;
+}
+
+static int32_t lonely_free(int32_t side, int32_t x, int32_t y)
+{
+    return side > 0 && x % 2 == 0 && y % 2 == 0 ? 2 : 0;
+}
+
+static int32_t strips_free(int32_t side, int32_t x, int32_t y)
+{
+    return y % 3 == 1 && x > 0 && x < side - 1 ? 6 : 0;
+}
+
+static int32_t corner_free(int32_t side, int32_t x, int32_t y)
+{
+    return x > side - 8 && y > side - 9 ? 6 : 0;
+}
+
+static int32_t inner_free(int32_t side, int32_t x, int32_t y)
+{
+    return x > 0 && y > 0 && x < side - 1 && y < side - 1 ? 1 + (x + y) % 6 : 0;
+}
+
+// Without any unknown as well: inner_free of 1 and 2.
+TEST(held_nodes_lonely_ones_and_many_pieces_are_solved)
+{
+    static const holding left_free[] = {one_free,    two_free,    lonely_free,
+                                        strips_free, corner_free, inner_free};
+    static const int32_t sides[] = {1, 2, 3, 10, 64};
+    for (uint64_t n = 0; n < 30; n++) {
+        random_matrix m;
+        solver *s;
+        int32_t weak;
+        double *x = NULL, *b = NULL;
+        CHECK_OK(make_held(ctx, sides[n / 6], 0, left_free[n % 6], 1 + n, &m));
+        int32_t size = unknowns_of(&m.a);
+        CHECK_OK(ALLOCATE(ctx, x, size));
+        CHECK_OK(ALLOCATE(ctx, b, size));
+        product(&m, 1, x, b);
+        CHECK_OK(solver_open(ctx, &m.a, &s));
+        CHECK_OK(solver_factor(ctx, s, &weak));
+        CHECK_OK(solver_solve(ctx, s, 1, b));
+        CHECK(largest_difference(size, x, b) < 1e-10);
+        solver_close(ctx, s);
+        release(ctx, x);
+        release(ctx, b);
+        matrix_free(ctx, &m);
+    }
+}
+
+enum { AT_ONCE = 4, HASHED = 3 };
+
+// Solutions of a few structures, in a context of its own.
+static void *solve_alone(void *shared)
+{
+    double(*sum)[2] = shared;
+    jali_context_options opt = jali_context_defaults();
+    jali_context *own;
+    opt.threads = 2;
+    if (jali_context_create(&opt, &own) != JALI_OK) return NULL;
+    for (int32_t n = 0; n < HASHED; n++) {
+        random_matrix m = {0};
+        solver *s = NULL;
+        int32_t weak;
+        double *b = NULL;
+        sum[n][0] = sum[n][1] = 0;
+        if (make_matrix(own, 40, 4, 9 + (uint64_t)n, &m) == JALI_OK &&
+            ALLOCATE(own, b, unknowns_of(&m.a)) == JALI_OK && solver_open(own, &m.a, &s) == JALI_OK &&
+            solver_factor(own, s, &weak) == JALI_OK) {
+            for (int32_t i = 0; i < unknowns_of(&m.a); i++) b[i] = 1;
+            if (solver_solve(own, s, 1, b) == JALI_OK)
+                for (int32_t i = 0; i < unknowns_of(&m.a); i++) sum[n][i % 2] += b[i] * (1 + i % 7);
+        }
+        solver_close(own, s);
+        release(own, b);
+        matrix_free(own, &m);
+    }
+    jali_context_free(own);
+    return NULL;
+}
+
+TEST(contexts_at_once_give_the_same_bytes)
+{
+    double alone[HASHED][2], sum[AT_ONCE][HASHED][2];
+    pthread_t thread[AT_ONCE];
+    solve_alone(alone);
+    for (int32_t n = 0; n < HASHED; n++) CHECK(alone[n][0] != 0);
+    for (int32_t i = 0; i < AT_ONCE; i++) CHECK_INT(pthread_create(&thread[i], NULL, solve_alone, sum[i]), 0);
+    for (int32_t i = 0; i < AT_ONCE; i++) {
+        CHECK_INT(pthread_join(thread[i], NULL), 0);
+        assert_memory_equal(sum[i], alone, sizeof alone);
+    }
+}
+
+TEST(random_numbers_of_the_host_go_on_as_they_were)
+{
+    int wanted[10];
+    double sum[HASHED][2];
+    srand(5);
+    for (int i = 0; i < 10; i++) wanted[i] = rand();
+    srand(5);
+    for (int i = 0; i < 10; i++) {
+        if (i == 4) solve_alone(sum);
+        CHECK_INT(rand(), wanted[i]);
+    }
+}
+
 static jali_status solve_once(jali_context *limited, void *data)
 {
     (void)data;
@@ -238,6 +363,9 @@ int main(void)
         cmocka_unit_test(entries_of_the_inverse_are_those_of_the_solutions),
         cmocka_unit_test(what_is_not_positive_definite_is_refused),
         cmocka_unit_test(limits_are_kept),
+        cmocka_unit_test(held_nodes_lonely_ones_and_many_pieces_are_solved),
+        cmocka_unit_test(contexts_at_once_give_the_same_bytes),
+        cmocka_unit_test(random_numbers_of_the_host_go_on_as_they_were),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);
