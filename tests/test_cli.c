@@ -252,15 +252,17 @@ TEST(a_picture_is_made_strong)
 {
     char json[TEXT_BYTES];
     write_sample();
-    run("carve rings.png -o held.3mf --width 30 --force 3 --across 2 --json held.json --report held.html "
+    run("carve rings.png -o held.3mf --width 30 --phi-s 0.8 --phi-v 0.8 --force 3 --across 2 --json "
+        "held.json --report held.html "
         "--map held.png "
         "--displacement-map held.vtu",
         0, "largest stress");
     read_text("held.json", json);
     CHECK(strstr(json, "\"sound\": true") && strstr(json, "\"max_stress_mpa\"") &&
           strstr(json, "\"name\": \"pla\""));
-    run("analyse rings.png --width 30 --force 3000 --across 2 --json broken.json --map broken.ply -q", 3,
-        "does not bear the load");
+    run("analyse rings.png --width 30 --phi-s 0.8 --phi-v 0.8 --force 3000 --across 2 --json broken.json "
+        "--map broken.ply -q",
+        3, "does not bear the load");
     read_text("broken.json", json);
     CHECK(strstr(json, "\"sound\": false") && strstr(json, "\"load_share\"") && !strstr(json, "nan"));
     run("carve rings.png -o light.3mf --width 30 --force 3000 --no-structure", 0, "closed and manifold");

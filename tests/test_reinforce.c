@@ -38,7 +38,7 @@ static void set_box(jali_bitmap *a, int32_t x0, int32_t y0, int32_t x1, int32_t 
         for (int32_t x = x0; x < x1; x++) jali_bitmap_set(a, MARGIN_PX + x, MARGIN_PX + y, white);
 }
 
-static void make_tongue(tongue *t, int32_t gap_px, double force_n)
+static void make_tongue_of(tongue *t, int32_t gap_px, double force_n, double phi_s_mm)
 {
     jali_carve_options carve = jali_carve_defaults();
     jali_sheet_options opt = jali_sheet_defaults();
@@ -52,11 +52,16 @@ static void make_tongue(tongue *t, int32_t gap_px, double force_n)
     CHECK_OK(jali_trace(ctx, &t->mask, &CHART, NULL, &t->outline));
     CHECK_OK(jali_plate(ctx, &t->outline, &CHART, &carve, &t->plate));
     opt.across = 2;
-    opt.phi_s_mm = 1;
+    opt.phi_s_mm = phi_s_mm;
     CHECK_OK(jali_sheet_plate(ctx, &t->plate, &CHART, 1, &opt, &t->sheet));
     load.load.force_n = force_n;
     load.phi_s_mm = 1;
     CHECK_OK(jali_analyse(ctx, &t->sheet, &load, &t->analysis));
+}
+
+static void make_tongue(tongue *t, int32_t gap_px, double force_n)
+{
+    make_tongue_of(t, gap_px, force_n, 1);
 }
 
 static void free_tongue(tongue *t)
@@ -299,7 +304,7 @@ static jali_status reinforce_once(jali_context *limited, void *data)
 TEST(every_allocation_refused_once)
 {
     tongue t;
-    make_tongue(&t, 20, 10);
+    make_tongue_of(&t, 20, 10, 4);
     refuse_each_allocation(reinforce_once, &t);
     free_tongue(&t);
 }
