@@ -278,15 +278,11 @@ jali_status run_carve(jali_context *ctx, const settings *set)
 }
 
 // As it is: no connectors, no matter whether it holds.
-jali_status run_analyse(jali_context *ctx, const settings *given)
+jali_status analyse_picture(jali_context *ctx, const settings *given)
 {
     settings set = *given;
     set.make.strengthen.reinforce.rule = JALI_REINFORCE_NONE;
     set.make.check = false;
-    if (!set.make.structure)
-        return fail(
-            ctx, JALI_BAD_VALUE,
-            "there is no load to analyse; --force, --pressure, --weight, --push or --pinch gives one");
     return make(ctx, &set, true);
 }
 

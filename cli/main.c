@@ -17,7 +17,8 @@ static const verb verbs[] = {
      IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JOB | GROUP_JSON | GROUP_REPORT | GROUP_RENDER | GROUP_VIEW |
          GROUP_SIDE | GROUP_LOAD | GROUP_REINFORCE | OUTPUT_AND_RUN,
      ".3mf.stl.svg.dxf.png", run_carve},
-    {"analyse", "PICTURE", "what a load does to the carved picture as it is: stress and displacement",
+    {"analyse", "PICTURE|MODEL",
+     "what a load does to a carved picture, or a plate, as it is: stress and displacement",
      IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | GROUP_LOAD | GROUP_OVERWRITE |
          GROUP_RUN,
      "", run_analyse},

@@ -6,6 +6,9 @@
 
 #include <jansson.h>
 
+/// Carve a picture and analyse it.
+jali_status analyse_picture(jali_context *ctx, const settings *set);
+
 /// Can a map be written under this name?
 bool is_map(const char *path);
 

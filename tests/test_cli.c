@@ -266,6 +266,12 @@ TEST(a_picture_is_made_strong)
     read_text("broken.json", json);
     CHECK(strstr(json, "\"sound\": false") && strstr(json, "\"load_share\"") && !strstr(json, "nan"));
     run("carve rings.png -o light.3mf --width 30 --force 3000 --no-structure", 0, "closed and manifold");
+    run("analyse light.3mf --force 0.01 --phi-s 0.8 --across 2 --json model.json --map model.vtu", 0,
+        "a plate 4 mm thick");
+    read_text("model.json", json);
+    CHECK(strstr(json, "\"support\": \"rim\"") && strstr(json, "\"sound\": true"));
+    run("carve rings.png --surface sphere:r=30 --width 20 -o round.stl --no-predict", 0, "");
+    run("analyse round.stl --force 3", 1, "is no plate");
     run("list materials", 0, "");
     CHECK(strstr(printed, "petg") && strstr(printed, "MPa"));
 }

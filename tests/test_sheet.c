@@ -432,9 +432,55 @@ TEST(refused_memory_on_a_surface_is_said_and_nothing_leaks)
     laid_free(&on);
 }
 
+// What carve makes of contours gives their sheet back: the same area, held at the rim, thickness and all.
+TEST(a_plates_mesh_gives_the_sheet_of_its_contours)
+{
+    sketch s = {0};
+    jali_sheet sheet, of_mesh;
+    jali_mesh mesh;
+    jali_chart chart;
+    jali_carve_options carve = jali_carve_defaults();
+    jali_sheet_options opt = jali_sheet_defaults();
+    double thickness;
+    add_ring(&s, 40, 50, 12, 60, false);
+    add_box(&s, 60, 30, 10, 40, false);
+    carve.frame_mm = 5;
+    carve.thickness_mm = 3;
+    opt.phi_s_mm = 2;
+    opt.whole = true;
+    jali_contours plate;
+    CHECK_OK(jali_plate(ctx, &s.contours, &CHART, &carve, &plate));
+    CHECK_OK(jali_carve(ctx, &s.contours, &CHART, &carve, &mesh));
+    CHECK_OK(jali_sheet_plate(ctx, &plate, &CHART, 3, &opt, &sheet));
+    CHECK_OK(jali_sheet_plate_model(ctx, &mesh, &opt, &chart, &thickness, &of_mesh));
+    double area[2] = {0}, rim[2] = {0};
+    const jali_sheet *both[] = {&sheet, &of_mesh};
+    for (int k = 0; k < 2; k++) {
+        for (int32_t t = 0; t < both[k]->triangle_count; t++) {
+            const int32_t *c = both[k]->triangle[t];
+            const double(*v)[3] = (const double(*)[3])both[k]->node;
+            area[k] += ((v[c[1]][0] - v[c[0]][0]) * (v[c[2]][1] - v[c[0]][1]) -
+                        (v[c[1]][1] - v[c[0]][1]) * (v[c[2]][0] - v[c[0]][0])) /
+                       2;
+        }
+        for (int32_t i = 0; i < both[k]->node_count; i++)
+            rim[k] += (both[k]->border[i] & JALI_BORDER_RIM) != 0;
+    }
+    CHECK(fabs(thickness - 3) < 1e-9 && fabs(area[0] / area[1] - 1) < 1e-4);
+    CHECK(rim[1] > 0.8 * rim[0] && rim[1] < 1.2 * rim[0]);
+    mesh.vertex[0][2] += 1; // a corner between the planes
+    jali_sheet_free(ctx, &of_mesh);
+    CHECK_STATUS(jali_sheet_plate_model(ctx, &mesh, &opt, &chart, &thickness, &of_mesh), JALI_NO_RESULT);
+    CHECK(of_mesh.node == NULL);
+    jali_mesh_free(ctx, &mesh);
+    jali_contours_free(ctx, &plate);
+    jali_sheet_free(ctx, &sheet);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plates_mesh_gives_the_sheet_of_its_contours),
         cmocka_unit_test(a_plain_plate_has_few_even_triangles),
         cmocka_unit_test(every_strip_has_its_elements_across),
         cmocka_unit_test(borders_say_what_they_are),

@@ -52,6 +52,19 @@ JALI_API jali_sheet_options jali_sheet_defaults(void);
 JALI_API jali_status jali_sheet_plate(jali_context *ctx, const jali_contours *plate, const jali_chart *chart,
                                       double thickness_mm, const jali_sheet_options *opt, jali_sheet *sheet);
 
+/// The sheet of a plate that is given as a mesh: what lies between two planes z = low and high, its walls
+/// square to them. All of it.
+///   in     opt            NULL means the defaults; `whole` plays no part
+///   out    chart          a grid over it, for maps; its origin is the mesh's lower left corner
+///          thickness_mm   high - low
+///          sheet          free with jali_sheet_free
+///   fails  as jali_sheet_plate, and JALI_NO_RESULT (the mesh is no such plate), JALI_BAD_INPUT (its outline
+///   is
+///          open or meets itself: where)
+JALI_API jali_status jali_sheet_plate_model(jali_context *ctx, const jali_mesh *mesh,
+                                            const jali_sheet_options *opt, jali_chart *chart,
+                                            double *thickness_mm, jali_sheet *sheet);
+
 /// The sheet of a picture on a surface, halfway between the skins. Creases of the surface are cut; walls less
 /// than half solid are left out. With `whole` the other triangles of the surface are joined to it node by
 /// node.
