@@ -132,6 +132,12 @@ static jali_status predict(jali_context *ctx, const jali_options *opt, jali_resu
     TRY(jali_connect(ctx, &plain, NULL, &plain, NULL));
     TRY(jali_predict(ctx, &reference, &plain, MARGIN_PX, outside, &p, &r->connected_print));
     TRY(jali_predict(ctx, &reference, &r->optimised.mask, r->chart.margin_px, outside, &p, &r->result_print));
+    if (r->result_print.pieces == 0)
+        status =
+            fail(ctx, JALI_NO_RESULT,
+                 "nothing of the picture would come out of the printer: its solid is hardly wider than %g mm "
+                 "anywhere; a larger size or a finer printer would help",
+                 opt->optimise.phi_s_mm);
 done:
     jali_reference_free(ctx, &reference);
     jali_bitmap_free(ctx, &plain);

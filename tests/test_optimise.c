@@ -379,6 +379,30 @@ TEST(bad_values_are_a_sentence)
     bad = good, bad.detail = -1, refuse_option(bad, JALI_BAD_VALUE, "0 to 100");
 }
 
+// Found among 20,000 random blobs: an ellipse of 1.82 x 2.06 px, cut by the border of a plate without a
+// frame, whose print has no piece at all on the prediction's own grid.
+TEST(a_picture_of_which_nothing_would_print_gets_a_sentence)
+{
+    enum { W = 21, H = 7 };
+    uint8_t grey[W * H];
+    jali_picture picture = {W, H, grey};
+    jali_options opt = jali_defaults();
+    jali_result r;
+    for (int32_t y = 0; y < H; y++)
+        for (int32_t x = 0; x < W; x++) {
+            double dx = (x - 16) / 1.82, dy = (y - 6) / 2.06;
+            grey[y * W + x] = dx * dx + dy * dy <= 1 ? 255 : 0;
+        }
+    opt.optimise.phi_e_mm = 0.15;
+    opt.optimise.phi_s_mm = 0.25;
+    opt.optimise.phi_v_mm = 0.2;
+    opt.optimise.epsilon_mm = 0.75;
+    opt.place.width_mm = 3.2;
+    opt.place.frame_mm = 0;
+    CHECK_STATUS(jali_make(ctx, &picture, &opt, &r), JALI_NO_RESULT);
+    CHECK(strstr(jali_message(ctx), "would come out of the printer") && r.mesh.vertex == NULL);
+}
+
 static jali_status optimise_some(jali_context *limited, void *data)
 {
     const jali_bitmap *drawing = data;
@@ -414,6 +438,7 @@ int main(void)
         cmocka_unit_test(random_pictures_without_a_frame),
         cmocka_unit_test(a_mask_that_opening_leaves_alone_is_mended_too),
         cmocka_unit_test(degenerate_pictures),
+        cmocka_unit_test(a_picture_of_which_nothing_would_print_gets_a_sentence),
         cmocka_unit_test(the_samples_give_the_golden_masks),
         cmocka_unit_test(real_pictures_keep_the_promises),
         cmocka_unit_test(bad_values_are_a_sentence),
