@@ -70,6 +70,17 @@ carve_on tree 60 vase:h=150
 carve_on mask 34 sphere:r=30 --place project
 
 echo
+echo "  And under a load, 20 N pressed against it, connectors where they relieve it most:"
+echo
+"$jali" carve "$out/tree.png" --width 60 --force 20 --force-overwrite -o "$out/tree-strong.3mf" \
+    --json "$out/tree-strong.json" --report "$out/tree-strong.html" --map "$out/tree-stress.png" 2>&1 |
+    sed -n '/stress\|connector/s/^/    /p'
+cat >> "$out/index.html" <<ROW
+<figure><figcaption>tree, under 20 N: <span>stress with connectors</span></figcaption><img src="tree-stress.png" alt="stress">
+<p><a href="tree-strong.html">report</a> <a href="tree-strong.3mf">3mf</a></p></figure>
+ROW
+
+echo
 echo "  jali check, on the last plate as a slicer would read it:"
 "$jali" check "$out/sunflower.3mf" 2>&1 | sed 's/^/    /'
 here=$(cd "$out" && pwd)
