@@ -183,7 +183,7 @@ TEST(bridges_act_as_if_they_were_in_the_mesh)
         for (int round = 0; round < 4; round++) {
             for (const int *b = rounds[round]; *b >= 0; b++) {
                 if (name[*b] >= 0) {
-                    withdraw(ctx, &a, name[*b]);
+                    withdraw(&a, name[*b]);
                     name[*b] = -1;
                 } else {
                     CHECK_OK(attach(ctx, &a, &c->bridge[*b], &name[*b]));
@@ -232,7 +232,7 @@ TEST(worth_is_what_attaching_changes)
                 CHECK_OK(attach(ctx, &a, &c->bridge[b], &name[b]));
                 CHECK_OK(attached_solve(ctx, &a, 1, (const double(*)[NODE_UNKNOWNS])c->rest_load,
                                         (const double(*)[NODE_UNKNOWNS])base, true, then));
-                withdraw(ctx, &a, name[b]);
+                withdraw(&a, name[b]);
                 double real = then[200][2] - now[200][2] - 2 * (then[90][3] - now[90][3]);
                 CHECK(fabs(real) > 1e-6);
                 CHECK(fabs(real - change[b]) < 1e-8 * fabs(real) + 1e-10);

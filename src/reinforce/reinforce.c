@@ -162,14 +162,6 @@ done:
     return status;
 }
 
-static void take_back(jali_context *ctx, search *s, int32_t i)
-{
-    withdraw(ctx, &s->attached, s->connector[i].name);
-    plank_free(ctx, &s->connector[i].plank);
-    s->count--;
-    memmove(s->connector + i, s->connector + i + 1, (size_t)(s->count - i) * sizeof *s->connector);
-}
-
 // --- The best
 
 // Hot spots of the sheet, and K^-1 times the gradient of each.
@@ -300,27 +292,55 @@ static double stress_in(const search *s, int32_t which)
     return most;
 }
 
-// Take back connectors that bear little and without which the stress is no larger than it may be, or than it
-// is.
-static jali_status take_back_useless(jali_context *ctx, search *s, jali_reinforcement *r)
+static void swap_connectors(search *s, int32_t i, int32_t k)
+{
+    connector kept = s->connector[i];
+    s->connector[i] = s->connector[k];
+    s->connector[k] = kept;
+}
+
+// Those that bear little to the end of the list; returns how many bear more. Goes by what was seen last.
+static jali_status set_idle_apart(jali_context *ctx, search *s, int32_t *bearing)
 {
     const double little = 0.25;
-    jali_status status = JALI_OK;
+    jali_status status;
+    double *stress = NULL;
+    *bearing = 0;
+    TRY(ALLOCATE(ctx, stress, s->count));
+    for (int32_t i = 0; i < s->count; i++) stress[i] = stress_in(s, i);
+    for (int32_t i = 0; i < s->count; i++)
+        if (stress[i] > little * s->now.stress.value) swap_connectors(s, i, (*bearing)++);
+done:
+    release(ctx, stress);
+    return status;
+}
+
+// Take back connectors that bear little and without which the stress is no larger than it may be, or than it
+// is. Most are of no use: many are taken at one time, fewer when that did harm, and one alone that does is
+// kept.
+static jali_status take_back_useless(jali_context *ctx, search *s, jali_reinforcement *r)
+{
+    jali_status status;
+    int32_t bearing, all = s->count;
     double allowed = fmax(s->opt.limit_mpa, 1.001 * s->now.stress.value);
-    for (int32_t i = s->count - 1; i >= 0; i--) {
-        span way = s->connector[i].span;
-        if (stress_in(s, i) > little * s->now.stress.value) continue;
+    TRY(set_idle_apart(ctx, s, &bearing));
+    for (int32_t some = s->count - bearing; some > 0;) {
         TRY(step(ctx, "reinforce", 0.9));
-        take_back(ctx, s, i);
+        all = s->count;
+        while (s->count > all - some) withdraw(&s->attached, s->connector[--s->count].name);
         TRY(look(ctx, s));
         if (s->now.stress.value <= allowed) {
-            r->withdrawn++;
+            r->withdrawn += some;
+            for (int32_t i = s->count; i < all; i++) plank_free(ctx, &s->connector[i].plank);
+            some = MIN(2 * some, s->count - bearing);
             continue;
         }
-        TRY(lay_connector(ctx, s, &way));
-        TRY(look(ctx, s));
+        while (s->count < all) attach_again(&s->attached, s->connector[s->count++].name);
+        if (some == 1) swap_connectors(s, s->count - 1, bearing++);
+        some = MIN(MAX(1, some / 2), s->count - bearing);
     }
 done:
+    if (status != JALI_OK) s->count = all; // for search_free
     return status;
 }
 

@@ -1,9 +1,9 @@
-// The few dense kernels of BLAS and LAPACK that fronts are made of, as Fortran has them. Matrices by columns.
-// Internal.
+// The few dense kernels of BLAS and LAPACK that we use, as Fortran has them. Matrices by columns. Internal.
 #ifndef SPARSE_BLAS_H
 #define SPARSE_BLAS_H
 
 void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info);
+void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
 void dtrsm_(const char *side, const char *uplo, const char *trans, const char *diag, const int *m,
             const int *n, const double *alpha, const double *a, const int *lda, double *b, const int *ldb);
 void dsyrk_(const char *uplo, const char *trans, const int *n, const int *k, const double *alpha,

@@ -13,9 +13,9 @@ bool cholesky(int32_t n, double *a);
 ///   inout  b   [n][columns]
 void cholesky_solve(int32_t n, const double *l, int32_t columns, double *b);
 
-/// P A = L U with the largest pivot of each column.
+/// A = L U P with the largest pivot of each row.
 ///   inout  a        [n][n]
-///   out    pivot    [n]
+///   out    pivot    [n] for lu_solve
 ///          false: singular
 bool lu(int32_t n, double *a, int32_t *pivot);
 

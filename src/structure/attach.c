@@ -19,37 +19,48 @@ void attachments_begin(attachments *a, structure *s, int32_t case_count)
 
 void attachments_free(jali_context *ctx, attachments *a)
 {
-    for (size_t i = 0; i < a->count; i++) condensed_free(ctx, &a->bridge[i]);
+    for (size_t i = 0; i < a->kept; i++) condensed_free(ctx, &a->bridge[i]);
     release(ctx, a->bridge);
     release(ctx, a->row);
     release(ctx, a->f);
     *a = (attachments){0};
 }
 
+static void swap_bridges(attachments *a, size_t i, size_t k)
+{
+    condensed kept = a->bridge[i];
+    a->bridge[i] = a->bridge[k];
+    a->bridge[k] = kept;
+}
+
 jali_status attach(jali_context *ctx, attachments *a, const bridge *b, int32_t *name)
 {
     jali_status status;
-    TRY(GROW(ctx, a->bridge, a->capacity, a->count + 1));
-    TRY(condense(ctx, a->s, b, a->case_count, &a->bridge[a->count]));
-    *name = a->bridge[a->count++].name = a->next_name++;
+    TRY(GROW(ctx, a->bridge, a->capacity, a->kept + 1));
+    TRY(condense(ctx, a->s, b, a->case_count, &a->bridge[a->kept]));
+    *name = a->bridge[a->kept].name = a->next_name++;
+    swap_bridges(a, a->count++, a->kept++);
 done:
     return status;
 }
 
-static condensed *named(const attachments *a, int32_t name)
+// Where the bridge of that name stands among [from, to); to: it does not.
+static size_t named(const attachments *a, int32_t name, size_t from, size_t to)
 {
-    for (size_t i = 0; i < a->count; i++)
-        if (a->bridge[i].name == name) return &a->bridge[i];
-    return NULL;
+    while (from < to && a->bridge[from].name != name) from++;
+    return from;
 }
 
-void withdraw(jali_context *ctx, attachments *a, int32_t name)
+void withdraw(attachments *a, int32_t name)
 {
-    condensed *c = named(a, name);
-    if (!c) return;
-    condensed_free(ctx, c);
-    a->count--;
-    memmove(c, c + 1, (size_t)(a->bridge + a->count - c) * sizeof *c);
+    size_t i = named(a, name, 0, a->count);
+    if (i < a->count) swap_bridges(a, i, --a->count);
+}
+
+void attach_again(attachments *a, int32_t name)
+{
+    size_t i = named(a, name, a->count, a->kept);
+    if (i < a->kept) swap_bridges(a, i, a->count++);
 }
 
 int32_t index_of(int32_t count, const int32_t *row, int32_t wanted)
@@ -296,7 +307,7 @@ done:
 void own_displacements(const attachments *a, int32_t name, int32_t of_case, const double (*u)[NODE_UNKNOWNS],
                        double (*own)[NODE_UNKNOWNS])
 {
-    const condensed *c = named(a, name);
+    const condensed *c = &a->bridge[named(a, name, 0, a->count)];
     int width = node_width(a->s), bit = first_bit(a->s);
     for (int32_t i = 0; i < c->own_unknowns; i++) {
         double sum = of_case >= 0 ? c->own_load[(size_t)of_case * (size_t)c->own_unknowns + (size_t)i] : 0;

@@ -14,8 +14,8 @@ typedef struct attachments {
     structure *s;
     int32_t case_count;
     int32_t next_name;
-    size_t count, capacity;
-    condensed *bridge; // [count] ascending by name
+    size_t count, kept, capacity;
+    condensed *bridge; // [kept] the first `count` are attached, the others withdrawn
     int32_t rank;      // unknowns at the ends of all bridges, also of those withdrawn since
     int32_t *row;      // [rank] ascending
     double *f;         // [rank][rank] K^-1 there
@@ -34,8 +34,10 @@ void attachments_free(jali_context *ctx, attachments *a);
 ///   cost   O(own^3)
 jali_status attach(jali_context *ctx, attachments *a, const bridge *b, int32_t *name);
 
-/// Take a bridge back. A name that is not there is ignored.
-void withdraw(jali_context *ctx, attachments *a, int32_t name);
+/// Take a bridge back, and attach it again: it stays condensed meanwhile. A name that is not there is
+/// ignored.
+void withdraw(attachments *a, int32_t name);
+void attach_again(attachments *a, int32_t name);
 
 /// Displacements of the structure with all its bridges.
 ///   in     load     [count][node_count] on the sheet
