@@ -79,4 +79,7 @@ typedef struct node_source {
 jali_status gather_sheet(jali_context *ctx, const refinement *r, int32_t scale, const node_source *source,
                          jali_sheet *sheet);
 
+/// Number the nodes along a Morton curve, and the triangles by it.
+jali_status number_along_curve(jali_context *ctx, jali_sheet *sheet);
+
 #endif

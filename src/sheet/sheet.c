@@ -225,6 +225,7 @@ jali_status jali_sheet_plate(jali_context *ctx, const jali_contours *plate, cons
     TRY(refine_triangles(ctx, &p.fine));
     TRY(gather_sheet(ctx, &p.fine, p.drawing.scale, &(node_source){locate_on_plate, border_of_plate, &p},
                      sheet));
+    TRY(number_along_curve(ctx, sheet));
     TRY(step(ctx, "mesh", 1));
 done:
     refinement_free(ctx, &p.fine);

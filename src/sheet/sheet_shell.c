@@ -263,6 +263,7 @@ jali_status jali_sheet_shell(jali_context *ctx, const jali_contours *picture, co
                           s.length.finest, &s.lift));
     TRY(refine_patch(ctx, &s));
     TRY(name_nodes(ctx, &s, sheet));
+    TRY(number_along_curve(ctx, sheet));
     TRY(step(ctx, "mesh", 1));
 done:
     refinement_free(ctx, &s.fine);

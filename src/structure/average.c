@@ -15,7 +15,7 @@ enum { MOST_NEAR = 256 };
 // The sector from direction p to direction q (any lengths), radius 1.
 static void add_sector(const double p[2], const double q[2], double *area, double moment[2])
 {
-    double a = hypot(p[0], p[1]), b = hypot(q[0], q[1]);
+    double a = sqrt(p[0] * p[0] + p[1] * p[1]), b = sqrt(q[0] * q[0] + q[1] * q[1]);
     *area += 0.5 * atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]);
     moment[0] += (q[1] / b - p[1] / a) / 3;
     moment[1] += (p[0] / a - q[0] / b) / 3;

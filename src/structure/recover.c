@@ -84,24 +84,34 @@ static void evaluate_block(void *shared, int32_t block)
     }
 }
 
+static bool is_among(int32_t count, const int32_t *list, int32_t wanted)
+{
+    for (int32_t i = 0; i < count; i++)
+        if (list[i] == wanted) return true;
+    return false;
+}
+
 // The fan's triangles, then those that smooth sides join to them and that touch one of their nodes.
 static int32_t gather_patch(const recovering *r, int32_t node, int32_t fan, int32_t patch[MOST_IN_PATCH],
                             int32_t *own_count)
 {
     const fans *f = &r->fans;
-    int32_t count = 0, (*triangle)[3] = r->sheet->triangle;
+    int32_t count = 0, ring[3 * MOST_IN_PATCH], ring_count = 0, (*triangle)[3] = r->sheet->triangle;
     for (int32_t i = f->first[node]; i < f->first[node + 1] && count < MOST_IN_PATCH; i++)
         if (f->fan[f->corner[i]] == fan) patch[count++] = f->corner[i] / 3;
     *own_count = count;
     for (int32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!is_among(ring_count, ring, triangle[patch[i]][k]))
+                ring[ring_count++] = triangle[patch[i]][k];
+    for (int32_t i = 0; i < count; i++)
         for (int side = 0; side < 3; side++) {
             int32_t next = f->beside[3 * patch[i] + side];
             if (next < 0 || !f->smooth[3 * patch[i] + side] || count == MOST_IN_PATCH) continue;
-            bool known = false, touches = false;
-            for (int32_t j = 0; j < count && !known; j++) known = patch[j] == next;
-            for (int32_t j = 0; j < 3 * *own_count && !known && !touches; j++)
-                for (int k = 0; k < 3; k++) touches |= triangle[patch[j / 3]][j % 3] == triangle[next][k];
-            if (touches && !known) patch[count++] = next;
+            if (is_among(count, patch, next)) continue;
+            bool touches = false;
+            for (int k = 0; k < 3 && !touches; k++) touches = is_among(ring_count, ring, triangle[next][k]);
+            if (touches) patch[count++] = next;
         }
     return count;
 }
@@ -162,8 +172,9 @@ static void fit_shares(const recovering *r, const double at[3], const double fra
         place[i][1] = dot(d, frame[1]);
         if (i < own_count) scale += dot(d, d) / own_count;
     }
+    scale = 1 / sqrt(scale);
     for (int32_t i = 0; i < count; i++) {
-        double x = place[i][0] /= sqrt(scale), y = place[i][1] /= sqrt(scale);
+        double x = place[i][0] *= scale, y = place[i][1] *= scale;
         double w = share[i] = r->state[patch[i]].area / (NEAR + x * x + y * y);
         const double term[6] = {1, x, y, x * x, x * y, y * y};
         for (int k = 0; k < 6; k++) sum[k] += w * term[k];
@@ -204,7 +215,7 @@ static void read_layers(const double v[FIELDS], double t, double layer[LAYERS], 
         if (l == MIDDLE) square = 2.25 * (v[6] * v[6] + v[7] * v[7]) / (t * t);
         layer[l] = sqrt(x * x + y * y - x * y + 3 * (xy * xy + square));
         if (l == MIDDLE) continue;
-        double half = hypot(0.5 * (x - y), xy);
+        double half = sqrt(0.25 * (x - y) * (x - y) + xy * xy);
         principal[l == INNER_FACE][0] = 0.5 * (x + y) + half;
         principal[l == INNER_FACE][1] = 0.5 * (x + y) - half;
     }
