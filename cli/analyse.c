@@ -96,5 +96,7 @@ jali_status run_analyse(jali_context *ctx, const settings *set)
         return fail(
             ctx, JALI_BAD_VALUE,
             "there is no load to analyse; --force, --pressure, --weight, --push or --pinch gives one");
+    if (set->petsc && strcmp(set->operand, "-") == 0)
+        return fail(ctx, JALI_BAD_VALUE, "stdin reaches one process alone; --solver petsc needs a file");
     return is_model(set->operand) ? analyse_model(ctx, set) : analyse_picture(ctx, set);
 }

@@ -40,6 +40,7 @@ typedef struct settings {
     jali_context_options context;
     double max_memory_mb;
     int32_t progress; // progress_kind
+    bool petsc;       // the structure is solved by several processes
     bool quiet, force_overwrite, help;
 } settings;
 
@@ -62,6 +63,7 @@ typedef enum option_group {
     GROUP_SIDE = 32768,  // of a square picture
     GROUP_LOAD = 65536,  // what the object bears, its maps
     GROUP_REINFORCE = 131072,
+    GROUP_SOLVER = 262144,
 } option_group;
 
 typedef struct verb {
@@ -138,6 +140,7 @@ jali_status draw_svg(jali_context *ctx, const uint8_t *bytes, size_t size, const
 void say(const settings *set, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /// Run a verb in a context made from the settings: signals, progress, exit code.
-exit_code run_verb(const verb *v, settings *set);
+///   in     refusal   what is wrong with the settings, and then nothing is run; NULL = nothing
+exit_code run_verb(const verb *v, settings *set, const char *refusal);
 
 #endif

@@ -3,6 +3,7 @@
 // Data go to stdout, words to stderr. The exit codes are in cli.h.
 #include "options.h"
 #include "outputs.h"
+#include "processes.h"
 
 #include <malloc.h>
 #include <stdio.h>
@@ -19,8 +20,8 @@ static const verb verbs[] = {
      ".3mf.stl.svg.dxf.png", run_carve},
     {"analyse", "PICTURE|MODEL",
      "what a load does to a carved picture, or a plate, as it is: stress and displacement",
-     IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | GROUP_LOAD | GROUP_OVERWRITE |
-         GROUP_RUN,
+     IMAGE | GROUP_PLATE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | GROUP_LOAD | GROUP_SOLVER |
+         GROUP_OVERWRITE | GROUP_RUN,
      "", run_analyse},
     {"adapt", "PICTURE", "make the picture printable, and stop there",
      IMAGE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
@@ -103,10 +104,11 @@ int main(int argc, char **argv)
     }
     for (int32_t i = 0; i < VERB_COUNT; i++) {
         if (strcmp(argv[1], verbs[i].name) != 0) continue;
-        if (!parse_options(&verbs[i], argc - 2, argv + 2, &set, sentence)) return refuse(sentence);
-        if (set.help) return print_verb_help(&verbs[i]);
-        if (!check_outputs(&verbs[i], &set, sentence)) return refuse(sentence);
-        return (int)run_verb(&verbs[i], &set);
+        if (!right_program(&verbs[i], argc, argv, sentence)) return refuse(sentence);
+        bool understood = parse_options(&verbs[i], argc - 2, argv + 2, &set, sentence);
+        if (understood && set.help) return print_verb_help(&verbs[i]);
+        understood = understood && check_outputs(&verbs[i], &set, sentence);
+        return (int)run_verb(&verbs[i], &set, understood ? NULL : sentence);
     }
     return unknown_verb(argv[1]);
 }

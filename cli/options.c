@@ -29,7 +29,8 @@ typedef enum value_kind {
     MATERIAL,
     SUPPORT,
     PUSH,
-    REINFORCE
+    REINFORCE,
+    SOLVER
 } value_kind;
 
 typedef struct option {
@@ -146,6 +147,8 @@ static const option options[] = {
      "draw the stress: .png, .ply (coloured) or .vtu (ParaView)"},
     {"displacement-map", "FILE", TEXT, GROUP_LOAD, FIELD(moved_map), 0, 0, 0,
      "draw how far it gives way, likewise"},
+    {"solver", "direct|petsc", SOLVER, GROUP_SOLVER, 0, 0, 0, 0,
+     "solve here, or by the processes that mpirun has started (direct)"},
     {"reinforce", "best|paper|none", REINFORCE, GROUP_REINFORCE, 0, 0, 0, 0,
      "lay connectors until it holds: where they help most, by the paper's rule, or not at all (best)"},
     {"rounds", "N", WHOLE, GROUP_REINFORCE, FIELD(make.strengthen.reinforce.most_rounds), 1, 1000, 0,
@@ -446,6 +449,13 @@ static bool parse_reinforce(const char *text, settings *set, char *sentence)
     return true;
 }
 
+static bool parse_solver(const char *text, settings *set, char *sentence)
+{
+    set->petsc = strcmp(text, "petsc") == 0;
+    if (set->petsc || strcmp(text, "direct") == 0) return true;
+    return wrong(sentence, "--solver takes direct or petsc, not \"%.40s\"", text);
+}
+
 static bool add_output(const char *text, settings *set, char *sentence)
 {
     if (set->output_count == MOST_OUTPUTS)
@@ -475,6 +485,7 @@ static bool set_option(const option *o, const char *text, settings *set, char *s
     case SUPPORT: return parse_support(text, set, sentence);
     case PUSH: return parse_push(text, set, sentence);
     case REINFORCE: return parse_reinforce(text, set, sentence);
+    case SOLVER: return parse_solver(text, set, sentence);
     case VECTOR: return parse_vector(o, text, field, sentence);
     case AT: return set->make.place.at_given = parse_vector(o, text, set->make.place.at_mm, sentence);
     case NUMBER:

@@ -3,6 +3,7 @@
 #include "options.h"
 #include "structure.h"
 #include "base/file.h"
+#include "sparse/solver.h"
 
 #include <jali/png.h>
 #include <stdio.h>
@@ -107,6 +108,7 @@ jali_status write_outputs(jali_context *ctx, const output *out, int32_t count)
 {
     jali_status status = JALI_OK;
     output_file file[MOST_OUTPUTS + OUTPUTS_BESIDE] = {0};
+    if (!solver_leads()) return JALI_OK;
     for (int32_t i = 0; i < count; i++) TRY(output_open(ctx, out[i].path, &file[i]));
     for (int32_t i = 0; i < count; i++)
         TRY(output_write(ctx, &file[i], out[i].bytes->data, out[i].bytes->size));

@@ -1,5 +1,6 @@
 // A verb's run: its context, what a signal does to it, what the user sees of it, and how it ends.
 #include "cli.h"
+#include "sparse/solver.h"
 
 #include <signal.h>
 #include <stdarg.h>
@@ -76,7 +77,7 @@ static exit_code exit_code_of(jali_status status)
     }
 }
 
-exit_code run_verb(const verb *v, settings *set)
+exit_code run_verb(const verb *v, settings *set, const char *refusal)
 {
     jali_context *ctx;
     progress_line line = {.plain = set->progress == PROGRESS_PLAIN};
@@ -89,7 +90,8 @@ exit_code run_verb(const verb *v, settings *set)
     }
     running = ctx;
     catch_signals();
-    jali_status status = v->run(ctx, set);
+    jali_status status = refusal ? fail(ctx, JALI_BAD_VALUE, "%s", refusal) : v->run(ctx, set);
+    status = solver_agree(ctx, status);
     running = NULL;
     clear_line(&line);
     if (status != JALI_OK) fprintf(stderr, "jali: %s\n", jali_message(ctx));

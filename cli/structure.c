@@ -1,5 +1,6 @@
 // What is said and drawn of the structure: maps, figures, words, the report's part.
 #include "structure.h"
+#include "sparse/solver.h"
 #include "base/bytes.h"
 
 #include <jali/png.h>
@@ -114,7 +115,7 @@ json_t *structure_of(const settings *set, const jali_strength *s)
     const jali_analysis *a = &s->analysis;
     if (!s->round_count) return json_null();
     return json_pack("{s:{s:s, s:f, s:f, s:f}, s:s, s:{s:f, s:f, s:f, s:f, s:f}, s:f, s:f, s:o, s:o, s:o, "
-                     "s:i, s:o, s:f, s:b, s:o}",
+                     "s:i, s:o, s:f, s:s, s:b, s:o}",
                      "material", "name", opt->material.name, "e_mpa", opt->material.e_mpa, "nu",
                      opt->material.nu, "limit_mpa", s->limit_mpa, "support", support[opt->support], "load",
                      "force_n", opt->load.force_n, "pressure_mpa", a->pressure_mpa, "weight",
@@ -123,7 +124,7 @@ json_t *structure_of(const settings *set, const jali_strength *s)
                      "max_displacement_at_mm", vector_of(a->moved.at_mm), "rounds", rounds_of(s),
                      "connectors", s->connectors, "change_by_refinement_mpa",
                      isfinite(s->change_mpa) ? json_real(s->change_mpa) : json_null(), "residual",
-                     a->residual, "sound", s->sound, "advice", advice_of(s));
+                     a->residual, "solver", solver_name(), "sound", s->sound, "advice", advice_of(s));
 }
 
 // --- The report

@@ -6,6 +6,9 @@ install(TARGETS jali_static jali_shared EXPORT jali-targets
 if(TARGET jali)
   install(TARGETS jali RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+if(TARGET jali_mpi)
+  install(TARGETS jali_mpi RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/jali)
+endif()
 install(DIRECTORY include/jali DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT jali-targets NAMESPACE jali:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jali)
 configure_package_config_file(cmake/jali-config.cmake.in ${PROJECT_BINARY_DIR}/jali-config.cmake

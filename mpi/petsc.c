@@ -10,10 +10,12 @@
 //          over SCOTCH's order first; when memory would not do, conjugate gradients with BoomerAMG. To choose
 //          by hand: PETSC_OPTIONS="-jali_solver direct" or "multigrid".
 // Limits:  geometry and pattern are whole on each process: about 300 bytes a node.
-// Checked: mpi/test.sh: against the sequential solver, on 1 and 2 processes.
+// Checked: mpi/test.sh: against the sequential solver, on 1 and 2 processes; mpi/cli.sh: through jali
+// analyse.
 #include "sparse/solver.h"
 
 #include <petscksp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -50,6 +52,7 @@ static void begin_petsc(void)
     PetscBool begun;
     if (PetscInitialized(&begun) == 0 && begun) return;
     if (PetscInitializeNoArguments() != 0) abort(); // nothing can be said without MPI
+    PetscPopSignalHandler();                        // signals are the program's
     PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
     atexit(end_petsc);
 }
@@ -61,6 +64,17 @@ static int rank_of_process(int *processes)
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
     MPI_Comm_size(PETSC_COMM_WORLD, processes);
     return rank;
+}
+
+const char *solver_name(void)
+{
+    return "petsc";
+}
+
+bool solver_leads(void)
+{
+    int processes;
+    return rank_of_process(&processes) == 0;
 }
 
 static int32_t first_node_of(int32_t node_count, int rank, int processes)
@@ -75,13 +89,31 @@ void solver_share(int32_t node_count, int32_t *from, int32_t *to)
     *to = first_node_of(node_count, rank + 1, processes);
 }
 
+// A broken promise is the least of all failures: what ended another process's run says more.
+static int gravity_of(jali_status status)
+{
+    return status == JALI_OK ? 0 : status == JALI_BROKEN ? 1 : 2 + (int)status;
+}
+
 jali_status solver_agree(jali_context *ctx, jali_status status)
 {
-    int processes, own = (int)status, worst;
-    rank_of_process(&processes);
-    MPI_Allreduce(&own, &worst, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-    if (worst == own) return status;
-    return fail(ctx, (jali_status)worst, "another process ended with status %d", worst);
+    static bool parted; // a process that failed asks no more: the others must not wait for it
+    struct {
+        int gravity, rank;
+    } own = {.gravity = gravity_of(status)}, worst;
+    struct {
+        jali_status status;
+        char sentence[512];
+    } failure = {.status = status};
+    int processes;
+    if (parted) return status;
+    own.rank = rank_of_process(&processes);
+    MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MAXLOC, PETSC_COMM_WORLD);
+    if (worst.gravity == 0) return JALI_OK;
+    parted = true;
+    snprintf(failure.sentence, sizeof failure.sentence, "%s", jali_message(ctx));
+    MPI_Bcast(&failure, sizeof failure, MPI_BYTE, worst.rank, PETSC_COMM_WORLD);
+    return worst.rank == own.rank ? status : fail(ctx, failure.status, "%s", failure.sentence);
 }
 
 // Memory that is free on all machines together.
@@ -334,6 +366,7 @@ done:
 jali_status solver_residual(jali_context *ctx, solver *s, const double *x, const double *b, double *r)
 {
     jali_status status;
+    TRY(solver_agree(ctx, JALI_OK));
     TRY(put(ctx, s, x, s->x));
     PETSC(MatMult(s->matrix, s->x, s->b));
     TRY(get(ctx, s, s->b, r));

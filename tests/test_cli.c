@@ -292,6 +292,22 @@ TEST(bad_loads_get_a_sentence)
     CHECK(access("stress.jpg", F_OK) != 0);
 }
 
+TEST(a_jali_without_petsc_says_so)
+{
+    char with[TEXT_BYTES];
+    write_sample();
+    snprintf(with, sizeof with, "%s", getenv("JALI_PROGRAM"));
+    CHECK_INT(system("cp \"$JALI_PROGRAM\" alone"), 0); // nothing lies beside this one
+    setenv("JALI_PROGRAM", "./alone", 1);
+    run("analyse rings.png --width 30 --force 3 --solver petsc", 2, "without PETSc");
+    run("analyse rings.png --width 30 --force 3 --solver=petsc --quiet", 2, "without PETSc");
+    run("analyse rings.png --width 30 --force 3 --solver mumps", 2, "direct or petsc");
+    run("carve rings.png -o x.3mf --force 3 --solver petsc", 2, "not an option of jali carve");
+    run("analyse rings.png --width 20 --across 2 --force 0.1 --solver direct --json - -q", 0, "");
+    CHECK(strstr(printed, "\"version\""));
+    setenv("JALI_PROGRAM", with, 1);
+}
+
 TEST(a_picture_is_adapted)
 {
     write_sample();
@@ -489,6 +505,7 @@ int main(void)
         cmocka_unit_test(a_picture_is_carved),
         cmocka_unit_test(a_picture_is_made_strong),
         cmocka_unit_test(bad_loads_get_a_sentence),
+        cmocka_unit_test(a_jali_without_petsc_says_so),
         cmocka_unit_test(a_picture_is_adapted),
         cmocka_unit_test(threads_do_not_change_a_file),
         cmocka_unit_test(a_picture_that_cannot_be_carved_is_a_sentence),

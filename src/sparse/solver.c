@@ -71,6 +71,16 @@ static double count_flops(const elimination *e)
     return flops;
 }
 
+const char *solver_name(void)
+{
+    return "direct";
+}
+
+bool solver_leads(void)
+{
+    return true;
+}
+
 void solver_share(int32_t node_count, int32_t *from, int32_t *to)
 {
     *from = 0;

@@ -18,11 +18,18 @@ typedef struct solver_figures {
     int32_t fronts;
 } solver_figures;
 
-/// Which nodes this process assembles: from .. to-1. All of them, unless several processes share the work
-/// (mpi/petsc.c has the same door; each of them then runs the same program and sees the same answers).
+/// Which solver this is: "direct", or "petsc" (mpi/petsc.c has the same door): then several processes may
+/// share the work. Each of them runs the same program on the same input and sees the same answers.
+const char *solver_name(void);
+
+/// Of several processes, the one that writes and speaks.
+bool solver_leads(void);
+
+/// Which nodes this process assembles: from .. to-1.
 void solver_share(int32_t node_count, int32_t *from, int32_t *to);
 
-/// The worst of all processes' outcomes, so that they go on or end together.
+/// The worst of all processes' outcomes, with its sentence, so that they go on or end together. Each of them
+/// asks equally often, up to the first outcome that is not JALI_OK; its end of the run is one such question.
 jali_status solver_agree(jali_context *ctx, jali_status status);
 
 /// r = b - A x.
