@@ -45,11 +45,6 @@ jali_status grow_array(jali_context *ctx, void *where, size_t *capacity, size_t 
 /// Give a block back; NULL is accepted.
 void release(jali_context *ctx, void *block);
 
-/// Count memory that a library takes by itself, so that the limit and the peak hold for it as well.
-///   fails  JALI_LIMIT; nothing is counted then
-jali_status count_bytes(jali_context *ctx, uint64_t bytes);
-void uncount_bytes(jali_context *ctx, uint64_t bytes);
-
 /// Scratch memory of one stage: take pieces, then rewind to where the stage began.
 typedef struct arena_mark {
     void *chunk;

@@ -106,18 +106,6 @@ static jali_status within_limit(jali_context *ctx, uint64_t bytes)
     return JALI_OK;
 }
 
-jali_status count_bytes(jali_context *ctx, uint64_t bytes)
-{
-    jali_status status = within_limit(ctx, bytes);
-    if (status == JALI_OK) account(ctx, bytes);
-    return status;
-}
-
-void uncount_bytes(jali_context *ctx, uint64_t bytes)
-{
-    atomic_fetch_sub(&ctx->held_bytes, bytes);
-}
-
 jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t size)
 {
     void *none = NULL;
