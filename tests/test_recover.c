@@ -59,6 +59,30 @@ TEST(constant_stress_is_found_at_every_node)
     model_free(&m);
 }
 
+// Tension along x that peaks in the middle of a strip as four squares across see it: 1, and 0 at its sides.
+TEST(peaks_inside_a_strip_are_not_levelled)
+{
+    shell_model m = grid_model(10, 6, CROSSED, (facet_material){1000, 0, 1});
+    jali_sheet sheet = model_sheet(&m);
+    stresses s;
+    int32_t seen = 0;
+    for (int32_t n = 0; n < m.node_count; n++) {
+        double x = 10 * m.place[n][0] - 5;
+        m.node[n][0] = 10 * m.place[n][0], m.node[n][1] = 6 * m.place[n][1];
+        m.u[n][0] = 1e-3 * (x - x * x * x / 12);
+    }
+    CHECK_OK(recover_stresses(ctx, &sheet, &m.made_of, (const double(*)[6])m.u, 0, &s));
+    for (int32_t n = 0; n < m.node_count; n++) {
+        if (fabs(m.node[n][0] - 5) > 1e-9 || m.place[n][1] < 0.3 || m.place[n][1] > 0.7) continue;
+        CHECK(fabs(s.worst[n] - 1) < 0.06);
+        seen++;
+    }
+    CHECK(seen > 0);
+    stresses_free(ctx, &s);
+    free(sheet.thickness_mm);
+    model_free(&m);
+}
+
 // Too thick to bend, a slope shears it: 1.5 times the mean stress in the middle, none on the faces.
 TEST(shear_is_largest_in_the_middle)
 {
@@ -280,6 +304,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constant_stress_is_found_at_every_node),
+        cmocka_unit_test(peaks_inside_a_strip_are_not_levelled),
         cmocka_unit_test(shear_is_largest_in_the_middle),
         cmocka_unit_test(creases_keep_their_sides_apart),
         cmocka_unit_test(steps_of_thickness_keep_their_sides_apart),
