@@ -1,7 +1,7 @@
 # The two commands: `make demo` shows what jali does, `make test` checks that it does. Both install what is
 # missing (Debian packages; with sudo when not root) and build first. The others are for those who work on it:
 #
-#   make judge      outside judges (admesh, PrusaSlicer, manifold-3d) over carved pictures
+#   make judge      outside judges (admesh, PrusaSlicer, manifold-3d, CalculiX)
 #   make bench      times and memory, stage by stage        make pictures   draw docs/pictures again
 #   make fuzz       each fuzzer for FUZZ_SECONDS            make format     lay the code out
 #   make coverage   what the tests reach                    make lint       clang-tidy, cppcheck, layout
@@ -10,7 +10,7 @@ PACKAGES := cmake ninja-build gcc g++ pkg-config libpng-dev libjpeg62-turbo-dev 
             libcairo2-dev libdeflate-dev libzip-dev libexpat1-dev libjansson-dev libcmocka-dev \
             libmetis-dev libopenblas-dev
 FUZZ_PACKAGES     := clang libclang-rt-dev
-JUDGE_PACKAGES    := admesh prusa-slicer
+JUDGE_PACKAGES    := admesh prusa-slicer calculix-ccx
 LINT_PACKAGES     := clang-format clang-tidy cppcheck
 COVERAGE_PACKAGES := gcovr
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# What others say of our plates and surfaces: admesh, PrusaSlicer and manifold-3d beside `jali check`.
+# What others say of our plates and surfaces: admesh, PrusaSlicer and manifold-3d beside `jali check`, CalculiX
+# beside the analysis.
 #
 #     tools/judge.sh JALI WORK_FOLDER [DATA_FOLDER]
 #
@@ -120,6 +121,13 @@ if [ -d "$data/meshes" ]; then
         esac
         judge "$(basename "$mesh")" "$data/images/lion.png" "$width" --surface "$mesh:$options" $view
     done
+fi
+# What the shell analysis says of a lattice and of a sample, against CalculiX's solids (3 % and 5 %).
+solids=$(dirname "$jali")/bench/solids
+if command -v ccx >/dev/null && [ -x "$solids" ]; then
+    verdict_of_solids() { if "$solids" --judge --across 4 "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi; }
+    for thickness in 0.06 0.3 1; do verdict_of_solids --thickness "$thickness" --solid-across 2; done
+    verdict_of_solids --picture girih --width 20 --phi-v 0.5 --solid-across 1
 fi
 echo "$passed passed, $failed failed, $refused refused with a sentence"
 [ "$failed" = 0 ]
