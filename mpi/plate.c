@@ -12,23 +12,29 @@
 #include <stdlib.h>
 #include <time.h>
 
-static double wall_seconds(void)
+enum { WALL, CPU };
+static const clockid_t clocks[] = {CLOCK_MONOTONIC, CLOCK_PROCESS_CPUTIME_ID};
+
+static double begun[2], spent[3][2];
+
+static double seconds_of(int which)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clocks[which], &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static double begun, spent[3];
-
 static void note(void *user, const char *stage, double fraction)
 {
-    static const char *const names[] = {"assemble", "factor", "solve"};
+    static const char *const names[] = {"assemble", "order", "factor", "solve"};
+    static const int column[] = {0, 1, 1, 2};
     (void)user;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         if (strcmp(stage, names[i]) != 0) continue;
-        if (fraction <= 0) begun = wall_seconds();
-        if (fraction >= 1) spent[i] += wall_seconds() - begun;
+        for (int c = WALL; c <= CPU; c++) {
+            if (fraction <= 0) begun[c] = seconds_of(c);
+            if (fraction >= 1) spent[column[i]][c] += seconds_of(c) - begun[c];
+        }
     }
 }
 
@@ -74,8 +80,11 @@ static jali_status run(jali_context *ctx, const char *verb, const char *path, in
     *good = f && (!writing || fwrite(u, sizeof *u, (size_t)sheet.node_count, f) == (size_t)sheet.node_count);
     double apart = *good && !writing ? compare(f, sheet.node_count, (const double(*)[NODE_UNKNOWNS])u) : 0;
     *good &= apart < 1e-6;
-    printf("%9d unknowns: assemble %.2f s, factor %.2f, solve %.2f; residual %.0e, apart by %.0e\n",
-           unknowns_of(&s.k), spent[0], spent[1], spent[2], s.residual, apart);
+    printf("%9d unknowns, wall / CPU s: assemble %.2f / %.2f, order and factor %.2f / %.2f, solve %.2f / "
+           "%.2f; residual "
+           "%.0e, apart by %.0e\n",
+           unknowns_of(&s.k), spent[0][WALL], spent[0][CPU], spent[1][WALL], spent[1][CPU], spent[2][WALL],
+           spent[2][CPU], s.residual, apart);
 done:
     if (f) fclose(f);
     structure_free(ctx, &s);
