@@ -127,7 +127,7 @@ solids=$(dirname "$jali")/bench/solids
 if command -v ccx >/dev/null && [ -x "$solids" ]; then
     verdict_of_solids() { if "$solids" --judge --across 4 "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi; }
     for thickness in 0.06 0.3 1; do verdict_of_solids --thickness "$thickness" --solid-across 2; done
-    verdict_of_solids --picture girih --width 20 --phi-v 0.5 --solid-across 1
+    verdict_of_solids --picture girih --width 20 --phi-v 0.5 --solid-across 2
 fi
 echo "$passed passed, $failed failed, $refused refused with a sentence"
 [ "$failed" = 0 ]

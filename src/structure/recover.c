@@ -5,11 +5,11 @@
 // How:     The resultants of a facet are best at its centroid. Around each node those of the two rings of
 //          triangles next to it, turned into the node's tangent plane, are fitted (weighted least squares)
 //          and read where the node is: by a paraboloid, as two rings are a whole strip that is four triangles
-//          wide, and a plane levels what peaks inside it (stresses of a lattice 9 % too low against solids;
-//          so 5 %); by a plane where there are few triangles. Around a hole with 16 triangles a quarter it
-//          gives 0.97 of Kirsch's 3.0 where the mean of the corners gives 0.89, with 32 it gives 1.00 and
-//          0.94. A patch ends at creases and steps of thickness (fans.c); a node there has a value on each
-//          side, and reports the worst.
+//          wide, and a plane levels what peaks inside it (stresses of a woven pattern 9 % too low against
+//          solids; so 5 %); by a plane where there are few triangles. Around a hole with 16 triangles a
+//          quarter it gives 0.97 of Kirsch's 3.0 where the mean of the corners gives 0.89, with 32 it
+//          gives 1.00 and 0.94. A patch ends at creases and steps of thickness (fans.c); a node there has a
+//          value on each side, and reports the worst.
 // Limits:  at re-entrant corners the stress has no limit, so that `worst` grows with refinement; `mean` does
 //          not. Principal stresses are given on the faces, not in the middle.
 // Checked: tests/test_recover.c, tests/test_published.c.
