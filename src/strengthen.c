@@ -185,39 +185,37 @@ done:
 
 // --- What would do
 
-// Largest stress of a coarse sheet whose thickness is `times` what it was.
-static jali_status stress_when_thicker(jali_context *ctx, const job *j, jali_sheet *sheet, double times,
-                                       double *stress)
+// Largest stress of the draft when its thickness is `times` what it is.
+static jali_status stress_when_thicker(jali_context *ctx, look *draft, double times, double *stress)
 {
     jali_status status;
-    jali_analysis a = {0};
+    jali_sheet *sheet = &draft->sheet;
     for (int32_t i = 0; i < sheet->node_count; i++) sheet->thickness_mm[i] *= times;
-    TRY(jali_analyse(ctx, sheet, &j->opt.analyse, &a));
-    *stress = a.stress.value;
+    TRY(jali_analyse_again(ctx, sheet, &draft->analysis));
+    *stress = draft->analysis.stress.value;
 done:
     for (int32_t i = 0; i < sheet->node_count; i++) sheet->thickness_mm[i] /= times;
-    jali_analysis_free(ctx, &a);
     return status;
 }
 
 // The stress falls as a power of the thickness, nearly: a secant through the logarithms, on the safe side.
-static jali_status thickness_that_does(jali_context *ctx, const job *j)
+static jali_status thickness_that_does(jali_context *ctx, job *j)
 {
     enum { MOST_TRIES = 5 };
     const double most_times = 100;
     jali_status status;
     jali_strength *s = j->s;
-    jali_sheet sheet = {0};
     double times[2] = {1, 1}, stress[2] = {0, 0}, mean = 0;
-    TRY(make_sheet(ctx, j, j->outline, &j->coarse, &sheet));
-    for (int32_t i = 0; i < sheet.node_count; i++) mean += sheet.thickness_mm[i] / sheet.node_count;
-    TRY(stress_when_thicker(ctx, j, &sheet, 1, &stress[0]));
+    if (!j->draft.sheet.node_count) TRY(make_draft(ctx, j));
+    const jali_sheet *sheet = &j->draft.sheet;
+    for (int32_t i = 0; i < sheet->node_count; i++) mean += sheet->thickness_mm[i] / sheet->node_count;
+    stress[0] = j->draft.analysis.stress.value;
     double fine_by_coarse = fmax(1, s->analysis.stress.value / stress[0]), power = -2;
     double limit = s->limit_mpa / fine_by_coarse;
     for (int32_t i = 0; i < MOST_TRIES; i++) {
         times[1] = times[0] * pow(0.98 * limit / stress[0], 1 / power);
-        if (!(times[1] <= most_times)) goto done;
-        TRY(stress_when_thicker(ctx, j, &sheet, times[1], &stress[1]));
+        if (!(times[1] <= most_times)) return JALI_OK;
+        TRY(stress_when_thicker(ctx, &j->draft, times[1], &stress[1]));
         if (stress[1] <= limit && stress[1] > 0.93 * limit) break;
         if (times[1] != times[0]) power = fmin(-0.3, log(stress[1] / stress[0]) / log(times[1] / times[0]));
         times[0] = times[1];
@@ -225,7 +223,6 @@ static jali_status thickness_that_does(jali_context *ctx, const job *j)
     }
     if (stress[1] <= limit) s->advice.thickness_mm = mean * times[1];
 done:
-    jali_sheet_free(ctx, &sheet);
     return status;
 }
 
@@ -267,14 +264,15 @@ static const char *material_that_does(const job *j, double stress)
     return best ? best->name : NULL;
 }
 
-static jali_status advise(jali_context *ctx, const job *j)
+static jali_status advise(jali_context *ctx, job *j)
 {
     jali_status status;
     jali_strength *s = j->s;
     s->advice.load_share = s->limit_mpa / s->analysis.stress.value;
     s->advice.material = material_that_does(j, s->analysis.stress.value);
-    TRY(stress_unpierced(ctx, j));
     TRY(thickness_that_does(ctx, j));
+    look_free(ctx, &j->draft);
+    TRY(stress_unpierced(ctx, j));
 done:
     return status;
 }
@@ -324,7 +322,6 @@ jali_status jali_strengthen(jali_context *ctx, const jali_chart *chart, const ja
     }
     if (j.opt.refine && !j.draft.sheet.node_count) TRY(make_draft(ctx, &j));
     if (j.draft.sheet.node_count) s->change_mpa = s->analysis.stress.value - j.draft.analysis.stress.value;
-    look_free(ctx, &j.draft);
     if (!s->sound && j.opt.advise) TRY(advise(ctx, &j));
 done:
     look_free(ctx, &j.draft);

@@ -90,6 +90,11 @@ JALI_API void jali_stiffness_drop(jali_context *ctx, jali_analysis *analysis);
 JALI_API jali_status jali_analyse(jali_context *ctx, const jali_sheet *sheet, const jali_analyse_options *opt,
                                   jali_analysis *analysis);
 
+/// The same sheet again, after its thickness changed: what depends on the pattern alone is kept.
+///   inout  analysis   has its stiffness still; empty on failure
+///   fails  as jali_analyse
+JALI_API jali_status jali_analyse_again(jali_context *ctx, const jali_sheet *sheet, jali_analysis *analysis);
+
 #ifdef __cplusplus
 }
 #endif

@@ -40,6 +40,30 @@ static jali_status check_options(jali_context *ctx, const jali_sheet *sheet, con
     return JALI_OK;
 }
 
+// Supports and forces at the nodes.
+static jali_status lay_load(jali_context *ctx, const jali_sheet *sheet, uint8_t *held, jali_analysis *a)
+{
+    jali_status status;
+    const jali_analyse_options *opt = &a->stiffness->opt;
+    memset(a->stiffness->load, 0, (size_t)sheet->node_count * sizeof *a->stiffness->load);
+    TRY(support_nodes(ctx, sheet, opt->support, held));
+    TRY(load_nodes(ctx, sheet, opt, held, a->stiffness->load, &a->pressure_mpa));
+done:
+    return status;
+}
+
+// Displacements and stresses, with the stiffness factored.
+static jali_status respond(jali_context *ctx, const jali_sheet *sheet, jali_analysis *a)
+{
+    jali_status status;
+    structure *s = &a->stiffness->structure;
+    TRY(structure_solve(ctx, s, 1, (const double(*)[6])a->stiffness->load, a->displacement));
+    a->residual = s->residual;
+    TRY(stresses_of(ctx, sheet, &a->stiffness->opt, a));
+done:
+    return status;
+}
+
 jali_status jali_analyse(jali_context *ctx, const jali_sheet *sheet, const jali_analyse_options *given,
                          jali_analysis *a)
 {
@@ -51,18 +75,29 @@ jali_status jali_analyse(jali_context *ctx, const jali_sheet *sheet, const jali_
     TRY(check_options(ctx, sheet, &opt));
     TRY(room_for_results(ctx, sheet->node_count, a));
     TRY(ALLOCATE_CLEARED(ctx, a->stiffness, 1));
-    TRY(ALLOCATE_CLEARED(ctx, a->stiffness->load, sheet->node_count));
+    TRY(ALLOCATE(ctx, a->stiffness->load, sheet->node_count));
     TRY(ALLOCATE(ctx, held, sheet->node_count));
-    TRY(support_nodes(ctx, sheet, opt.support, held));
-    TRY(load_nodes(ctx, sheet, &opt, held, a->stiffness->load, &a->pressure_mpa));
+    a->stiffness->opt = opt;
+    TRY(lay_load(ctx, sheet, held, a));
     for (int32_t i = 0; i < sheet->node_count; i++) held[i] = held[i] ? HELD_ALL : 0;
     a->area_mm2 = sheet_area(sheet);
-    a->stiffness->opt = opt;
-    structure *s = &a->stiffness->structure;
-    TRY(structure_create(ctx, sheet, &made_of, held, bends_only(sheet, &opt.load), s));
-    TRY(structure_solve(ctx, s, 1, (const double(*)[6])a->stiffness->load, a->displacement));
-    a->residual = s->residual;
-    TRY(stresses_of(ctx, sheet, &opt, a));
+    TRY(structure_create(ctx, sheet, &made_of, held, bends_only(sheet, &opt.load), &a->stiffness->structure));
+    TRY(respond(ctx, sheet, a));
+done:
+    release(ctx, held);
+    if (status != JALI_OK) jali_analysis_free(ctx, a);
+    return status;
+}
+
+jali_status jali_analyse_again(jali_context *ctx, const jali_sheet *sheet, jali_analysis *a)
+{
+    jali_status status;
+    uint8_t *held = NULL;
+    TRY(check_options(ctx, sheet, &a->stiffness->opt));
+    TRY(ALLOCATE(ctx, held, sheet->node_count));
+    TRY(lay_load(ctx, sheet, held, a));
+    TRY(structure_refactor(ctx, &a->stiffness->structure));
+    TRY(respond(ctx, sheet, a));
 done:
     release(ctx, held);
     if (status != JALI_OK) jali_analysis_free(ctx, a);
