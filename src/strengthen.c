@@ -271,8 +271,20 @@ static jali_status advise(jali_context *ctx, job *j)
     s->advice.load_share = s->limit_mpa / s->analysis.stress.value;
     s->advice.material = material_that_does(j, s->analysis.stress.value);
     TRY(thickness_that_does(ctx, j));
-    look_free(ctx, &j->draft);
+    if (!s->advice.unpierced_mpa) TRY(stress_unpierced(ctx, j));
+done:
+    return status;
+}
+
+// Connectors fill voids, at best all of them: where that does not hold, none is laid.
+static jali_status rule_out(jali_context *ctx, job *j)
+{
+    jali_status status;
+    jali_strength *s = j->s;
+    if (s->sound || j->rounds_left == 0) return JALI_OK;
     TRY(stress_unpierced(ctx, j));
+    s->helpless = s->advice.unpierced_mpa > s->limit_mpa;
+    if (s->helpless) j->rounds_left = 0;
 done:
     return status;
 }
@@ -314,6 +326,7 @@ jali_status jali_strengthen(jali_context *ctx, const jali_chart *chart, const ja
     *s = (jali_strength){.change_mpa = NAN};
     TRY(settle(ctx, &j));
     TRY(judge(ctx, &j));
+    TRY(rule_out(ctx, &j));
     while (!s->sound && changed && j.rounds_left > 0) {
         TRY(strengthen(ctx, &j, &changed));
         if (!changed) break;
@@ -322,6 +335,7 @@ jali_status jali_strengthen(jali_context *ctx, const jali_chart *chart, const ja
     }
     if (j.opt.refine && !j.draft.sheet.node_count) TRY(make_draft(ctx, &j));
     if (j.draft.sheet.node_count) s->change_mpa = s->analysis.stress.value - j.draft.analysis.stress.value;
+    if (s->sound) s->advice = (jali_advice){0};
     if (!s->sound && j.opt.advise) TRY(advise(ctx, &j));
 done:
     look_free(ctx, &j.draft);

@@ -133,6 +133,26 @@ TEST(bending_alone_and_all_six_unknowns_agree)
     drop_sheet(ctx, &sheet);
 }
 
+TEST(a_thicker_wall_is_analysed_again_as_if_anew)
+{
+    jali_sheet sheet = plate(30, 5);
+    jali_analyse_options opt = held_at_rim();
+    jali_analysis again, anew;
+    opt.load.force_n = 3;
+    opt.load.weight = 1;
+    CHECK_OK(jali_analyse(ctx, &sheet, &opt, &again));
+    for (int32_t i = 0; i < sheet.node_count; i++) sheet.thickness_mm[i] *= 1.7;
+    CHECK_OK(jali_analyse_again(ctx, &sheet, &again));
+    CHECK_OK(jali_analyse(ctx, &sheet, &opt, &anew));
+    CHECK(memcmp(again.mean_mpa, anew.mean_mpa, (size_t)sheet.node_count * sizeof *anew.mean_mpa) == 0);
+    CHECK(again.moved.value == anew.moved.value);
+    jali_analysis_free(ctx, &anew);
+    sheet.thickness_mm[3] = -1;
+    CHECK_STATUS(jali_analyse_again(ctx, &sheet, &again), JALI_BAD_VALUE);
+    CHECK(again.node_count == 0 && !again.stiffness);
+    drop_sheet(ctx, &sheet);
+}
+
 TEST(bad_figures_get_a_sentence)
 {
     jali_sheet sheet = plate(8, 0);
@@ -247,6 +267,7 @@ int main(void)
         cmocka_unit_test(a_clamped_plate_gives_way_and_is_stressed_by_the_formula),
         cmocka_unit_test(twice_the_load_is_twice_the_stress_and_stiffness_does_not_matter_to_it),
         cmocka_unit_test(bending_alone_and_all_six_unknowns_agree),
+        cmocka_unit_test(a_thicker_wall_is_analysed_again_as_if_anew),
         cmocka_unit_test(bad_figures_get_a_sentence),
         cmocka_unit_test(a_piece_that_nothing_holds_gets_a_sentence_with_its_place),
         cmocka_unit_test(materials_are_found_by_name_in_any_case),

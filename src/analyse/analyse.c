@@ -59,7 +59,7 @@ static jali_status respond(jali_context *ctx, const jali_sheet *sheet, jali_anal
     structure *s = &a->stiffness->structure;
     TRY(structure_solve(ctx, s, 1, (const double(*)[6])a->stiffness->load, a->displacement));
     a->residual = s->residual;
-    TRY(stresses_of(ctx, sheet, &a->stiffness->opt, a));
+    TRY(stresses_of(ctx, sheet, &a->stiffness->opt, false, a));
 done:
     return status;
 }

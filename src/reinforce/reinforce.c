@@ -105,7 +105,7 @@ static jali_status look(jali_context *ctx, search *s)
                           s->now.displacement + own);
         own += s->connector[i].plank.node_count - s->connector[i].plank.end_count;
     }
-    TRY(stresses_of(ctx, &s->joined, analysed_as(s), &s->now));
+    TRY(stresses_of(ctx, &s->joined, analysed_as(s), true, &s->now));
 done:
     return status;
 }

@@ -30,6 +30,7 @@ static const double NEAR = 2; // weight 1 / (NEAR + squared distance in sides): 
 typedef struct triangle_state {
     double frame[3][3], centroid[3], area;
     double value[FIELDS]; // n, m, q at the centroid
+    double worst;         // of the layers' von Mises there
 } triangle_state;
 
 typedef struct recovering {
@@ -41,6 +42,8 @@ typedef struct recovering {
     double *thickness;     // [triangle_count]
     fans fans;
     double *worst; // [fan_count]
+    double *peak;  // [node_count] the worst of a node's triangles
+    double quiet;  // below this no patch is fitted
     double radius_mm;
     stresses *out;
 } recovering;
@@ -52,6 +55,25 @@ void stresses_free(jali_context *ctx, stresses *s)
     release(ctx, s->worst);
     release(ctx, s->mean);
     *s = (stresses){.worst_at = -1, .mean_at = -1};
+}
+
+static void read_layers(const double v[FIELDS], double t, double layer[LAYERS], double principal[2][2])
+{
+    for (int l = 0; l < LAYERS; l++) {
+        double bend = l == OUTER_FACE ? 6 / (t * t) : l == INNER_FACE ? -6 / (t * t) : 0, square = 0;
+        double x = v[0] / t + bend * v[3], y = v[1] / t + bend * v[4], xy = v[2] / t + bend * v[5];
+        if (l == MIDDLE) square = 2.25 * (v[6] * v[6] + v[7] * v[7]) / (t * t);
+        layer[l] = sqrt(x * x + y * y - x * y + 3 * (xy * xy + square));
+        if (l == MIDDLE) continue;
+        double half = sqrt(0.25 * (x - y) * (x - y) + xy * xy);
+        principal[l == INNER_FACE][0] = 0.5 * (x + y) + half;
+        principal[l == INNER_FACE][1] = 0.5 * (x + y) - half;
+    }
+}
+
+static double worst_of(const double layer[LAYERS])
+{
+    return MAX(MAX(layer[OUTER_FACE], layer[INNER_FACE]), layer[MIDDLE]);
 }
 
 static void evaluate_block(void *shared, int32_t block)
@@ -87,7 +109,32 @@ static void evaluate_block(void *shared, int32_t block)
             high += s->frame[1][k] * (at[2][k] - at[0][k]);
         }
         s->area = 0.5 * wide * high;
+        double layer[LAYERS], principal[2][2];
+        read_layers(s->value, made_of.thickness_mm, layer, principal);
+        s->worst = worst_of(layer);
     }
+}
+
+static void peak_block(void *shared, int32_t block)
+{
+    recovering *r = shared;
+    const fans *f = &r->fans;
+    for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, f->node_count); n++) {
+        r->peak[n] = 0;
+        for (int32_t i = f->first[n]; i < f->first[n + 1]; i++)
+            r->peak[n] = MAX(r->peak[n], r->state[f->corner[i] / 3].worst);
+    }
+}
+
+// Are all triangles that touch the node's own ones quiet?
+static bool is_quiet(const recovering *r, int32_t node)
+{
+    const fans *f = &r->fans;
+    if (r->quiet == 0) return false;
+    for (int32_t i = f->first[node]; i < f->first[node + 1]; i++)
+        for (int k = 0; k < 3; k++)
+            if (r->peak[r->sheet->triangle[f->corner[i] / 3][k]] >= r->quiet) return false;
+    return true;
 }
 
 static bool is_among(int32_t count, const int32_t *list, int32_t wanted)
@@ -235,26 +282,18 @@ static double thickness_at(const recovering *r, int32_t node, const int32_t *pat
     return sum / area;
 }
 
-static void read_layers(const double v[FIELDS], double t, double layer[LAYERS], double principal[2][2])
-{
-    for (int l = 0; l < LAYERS; l++) {
-        double bend = l == OUTER_FACE ? 6 / (t * t) : l == INNER_FACE ? -6 / (t * t) : 0, square = 0;
-        double x = v[0] / t + bend * v[3], y = v[1] / t + bend * v[4], xy = v[2] / t + bend * v[5];
-        if (l == MIDDLE) square = 2.25 * (v[6] * v[6] + v[7] * v[7]) / (t * t);
-        layer[l] = sqrt(x * x + y * y - x * y + 3 * (xy * xy + square));
-        if (l == MIDDLE) continue;
-        double half = sqrt(0.25 * (x - y) * (x - y) + xy * xy);
-        principal[l == INNER_FACE][0] = 0.5 * (x + y) + half;
-        principal[l == INNER_FACE][1] = 0.5 * (x + y) - half;
-    }
-}
-
 static void recover_block(void *shared, int32_t block)
 {
     recovering *r = shared;
     const fans *f = &r->fans;
     for (int32_t node = block * BLOCK; node < MIN((block + 1) * BLOCK, f->node_count); node++) {
         double worst = 0;
+        if (is_quiet(r, node)) {
+            for (int32_t fan = f->first_fan[node]; fan < f->first_fan[node + 1]; fan++)
+                r->worst[fan] = r->peak[node];
+            r->out->worst[node] = r->peak[node];
+            continue;
+        }
         for (int32_t fan = f->first_fan[node]; fan < f->first_fan[node + 1]; fan++) {
             int32_t patch[MOST_IN_PATCH], own_count, count = gather_patch(r, node, fan, patch, &own_count);
             double frame[3][3], share[MOST_IN_PATCH], v[FIELDS] = {0}, turned[FIELDS];
@@ -266,7 +305,7 @@ static void recover_block(void *shared, int32_t block)
             }
             double layer[LAYERS], principal[2][2];
             read_layers(v, thickness_at(r, node, patch, own_count), layer, principal);
-            r->worst[fan] = MAX(MAX(layer[OUTER_FACE], layer[INNER_FACE]), layer[MIDDLE]);
+            r->worst[fan] = worst_of(layer);
             if (fan > f->first_fan[node] && r->worst[fan] <= worst) continue;
             worst = r->worst[fan];
             memcpy(r->out->von_mises[node], layer, sizeof layer);
@@ -280,8 +319,9 @@ static void average_block(void *shared, int32_t block)
 {
     recovering *r = shared;
     for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, r->fans.node_count); n++)
-        r->out->mean[n] =
-            r->radius_mm > 0 ? mean_around(r->sheet, &r->fans, r->worst, n, r->radius_mm) : r->out->worst[n];
+        r->out->mean[n] = r->radius_mm > 0 && !is_quiet(r, n)
+                              ? mean_around(r->sheet, &r->fans, r->worst, n, r->radius_mm)
+                              : r->out->worst[n];
 }
 
 static void find_largest(stresses *s)
@@ -311,8 +351,8 @@ static jali_status check_input(jali_context *ctx, const jali_sheet *sheet, const
     return JALI_OK;
 }
 
-jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
-                             const double (*u)[6], double disc_mm, stresses *s)
+static jali_status recover(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
+                           const double (*u)[6], double disc_mm, double quiet_share, stresses *s)
 {
     jali_status status;
     size_t nodes = (size_t)sheet->node_count, triangles = (size_t)sheet->triangle_count;
@@ -331,6 +371,10 @@ jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const f
     TRY(step(ctx, "stress", 0.3));
     TRY(fans_of(ctx, sheet, (const double(*)[3])r.normal, r.thickness, &r.fans));
     TRY(ALLOCATE(ctx, r.worst, r.fans.fan_count));
+    TRY(ALLOCATE(ctx, r.peak, nodes));
+    for (int32_t t = 0; t < sheet->triangle_count; t++)
+        r.quiet = MAX(r.quiet, quiet_share * r.state[t].worst);
+    if (r.quiet > 0) parallel(ctx, node_blocks, peak_block, &r);
     parallel(ctx, node_blocks, recover_block, &r);
     TRY(step(ctx, "stress", 0.7));
     parallel(ctx, node_blocks, average_block, &r);
@@ -340,7 +384,21 @@ done:
     release(ctx, r.normal);
     release(ctx, r.thickness);
     release(ctx, r.worst);
+    release(ctx, r.peak);
     fans_free(ctx, &r.fans);
     if (status != JALI_OK) stresses_free(ctx, s);
     return status;
+}
+
+jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
+                             const double (*u)[6], double disc_mm, stresses *s)
+{
+    return recover(ctx, sheet, made_of, u, disc_mm, 0, s);
+}
+
+jali_status recover_peaks(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
+                          const double (*u)[6], double disc_mm, stresses *s)
+{
+    const double quiet_share = 0.125; // a patch reads at most a few times its worst triangle at its node
+    return recover(ctx, sheet, made_of, u, disc_mm, quiet_share, s);
 }

@@ -31,8 +31,14 @@ void stresses_free(jali_context *ctx, stresses *s);
 ///   out    s          free with stresses_free
 ///   fails  JALI_BAD_VALUE (disc), JALI_NO_RESULT (a displacement that is no number), JALI_CANCELLED,
 ///          JALI_NO_MEMORY
-///   cost   O(n), about 5 us a node
+///   cost   O(n), about 3 us a node
 jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
                              const double (*u)[6], double disc_mm, stresses *s);
+
+/// As recover_stresses where the sheet is stressed most, at a third of its cost. Nodes about which no
+/// triangle has an eighth of the largest stress keep what the worst of their triangles has for `worst` and
+/// `mean`, and 0 for the rest.
+jali_status recover_peaks(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
+                          const double (*u)[6], double disc_mm, stresses *s);
 
 #endif

@@ -58,12 +58,13 @@ static void find_peaks(const jali_sheet *sheet, jali_analysis *a)
 }
 
 jali_status stresses_of(jali_context *ctx, const jali_sheet *sheet, const jali_analyse_options *opt,
-                        jali_analysis *a)
+                        bool peaks_only, jali_analysis *a)
 {
     jali_status status;
     stresses s = {0};
     facet_material made_of = {opt->material.e_mpa, opt->material.nu, 0};
-    TRY(recover_stresses(ctx, sheet, &made_of, (const double(*)[6])a->displacement, opt->phi_s_mm / 2, &s));
+    TRY((peaks_only ? recover_peaks : recover_stresses)(
+        ctx, sheet, &made_of, (const double(*)[6])a->displacement, opt->phi_s_mm / 2, &s));
     for (int32_t i = 0; i < a->node_count; i++) {
         for (int k = 0; k < LAYERS; k++) a->face_mpa[i][k] = (float)s.von_mises[i][k];
         a->principal_mpa[i][0] = (float)fmax(s.principal[i][0][0], s.principal[i][1][0]);

@@ -16,7 +16,8 @@ typedef struct jali_stiffness {
 jali_status room_for_results(jali_context *ctx, int32_t nodes, jali_analysis *a);
 
 /// Stresses and peaks of a sheet from the displacements that stand in `a`.
+///   in     peaks_only   where little is borne an estimate will do (recover_peaks)
 jali_status stresses_of(jali_context *ctx, const jali_sheet *sheet, const jali_analyse_options *opt,
-                        jali_analysis *a);
+                        bool peaks_only, jali_analysis *a);
 
 #endif
