@@ -124,6 +124,25 @@ TEST(a_plain_plate_has_few_even_triangles)
     jali_sheet_free(ctx, &clipped);
 }
 
+// What is near in the sheet is near in memory: triangles come by their first nodes, and most of them have all
+// their nodes near each other.
+TEST(nodes_and_triangles_are_numbered_along_a_curve)
+{
+    sketch s = {0};
+    add_box(&s, 5, 5, 90, 90, true);
+    jali_sheet sheet = meshed(&s, true, 4);
+    int32_t last = 0, near = 0;
+    for (int32_t t = 0; t < sheet.triangle_count; t++) {
+        const int32_t *c = sheet.triangle[t];
+        int32_t low = MIN(c[0], MIN(c[1], c[2])), high = MAX(c[0], MAX(c[1], c[2]));
+        CHECK(low >= last);
+        last = low;
+        near += high - low < sheet.node_count / 16;
+    }
+    CHECK(near > sheet.triangle_count / 2);
+    jali_sheet_free(ctx, &sheet);
+}
+
 TEST(every_strip_has_its_elements_across)
 {
     const double widths[] = {0.3, 0.45, 0.6, 1, 2, 5};
@@ -482,6 +501,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plates_mesh_gives_the_sheet_of_its_contours),
         cmocka_unit_test(a_plain_plate_has_few_even_triangles),
+        cmocka_unit_test(nodes_and_triangles_are_numbered_along_a_curve),
         cmocka_unit_test(every_strip_has_its_elements_across),
         cmocka_unit_test(borders_say_what_they_are),
         cmocka_unit_test(a_picture_that_ends_in_void_is_its_own_plate),
