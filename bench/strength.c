@@ -54,12 +54,13 @@ static void print_row(const strength_run *r, double force, const jali_result *re
 {
     const jali_strength *s = &result->strength;
     const jali_strength_round *first = &s->round[0], *last = &s->round[s->round_count - 1];
-    char told[160];
+    char told[160], thicker[32] = "no thickness";
+    if (s->advice.thickness_mm > 0) snprintf(thicker, sizeof thicker, "%.3g mm", s->advice.thickness_mm);
     if (s->sound)
         snprintf(told, sizeof told, "sound");
     else
-        snprintf(told, sizeof told, "bears %.2g %%; %.3g mm would do; unpierced %.3g MPa",
-                 100 * s->advice.load_share, s->advice.thickness_mm, s->advice.unpierced_mpa);
+        snprintf(told, sizeof told, "bears %.2g %%; %s would do; unpierced %.3g MPa",
+                 100 * s->advice.load_share, thicker, s->advice.unpierced_mpa);
     printf("| %s, %.0f mm | %.0f | %d k | %d | %d | %.3g | %.3g | %s | %.1f | %.1f | %.0f | %.0f |\n",
            r->name, r->width_mm, force, (last->nodes + 500) / 1000, s->round_count, s->connectors,
            first->stress_mpa, last->stress_mpa, told, stage_s, whole_cpu_s, r->paper_s, r->paper_s / stage_s);
@@ -77,17 +78,18 @@ static bool run_once(const char *data, const strength_run *r, int32_t threads, d
     jali_result result = {0};
     jali_object object = {0};
     jali_options opt = jali_defaults();
+    jali_read_options read = jali_read_defaults();
     own.threads = threads;
     if (jali_context_create(&own, &ctx) != JALI_OK) return false;
     opt.place.width_mm = r->width_mm;
     opt.place.placing = r->placing;
-    opt.threshold.invert = r->invert;
+    read.invert = r->invert;
     opt.predict = false;
     opt.structure = true;
     opt.strengthen.analyse.load.force_n = force;
     opt.strengthen.reinforce.most_rounds = 8;
     snprintf(path, sizeof path, "%s/images/%s.png", data, r->picture);
-    bool done = jali_read(ctx, path, NULL, &picture) == JALI_OK;
+    bool done = jali_read(ctx, path, &read, &picture) == JALI_OK;
     double begun = cpu_s();
     if (!r->surface) {
         done = done && jali_make(ctx, &picture, &opt, &result) == JALI_OK;
