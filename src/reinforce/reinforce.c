@@ -181,9 +181,10 @@ static jali_status know_outlook(jali_context *ctx, search *s, double (*adjoint)[
         now->adjoint[h] = (const double(*)[6])adjoint + (size_t)h * n;
     }
     const double(*loads)[6] = (const double(*)[6])gradient;
-    TRY(structure_solve(ctx, s->structure, now->hotspot_count, loads, adjoint));
-    TRY(attached_solve(ctx, &s->attached, now->hotspot_count, loads, (const double(*)[6])adjoint, false,
-                       adjoint));
+    TRY(structure_influence(ctx, s->structure, now->hotspot_count, loads, adjoint));
+    if (s->count > 0)
+        TRY(attached_solve(ctx, &s->attached, now->hotspot_count, loads, (const double(*)[6])adjoint, false,
+                           adjoint));
     for (int32_t i = 0; i < n; i++) {
         const double *f = s->analysis->stiffness->load[i];
         now->load_n += fabs(f[0]) + fabs(f[1]) + fabs(f[2]);

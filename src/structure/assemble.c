@@ -302,29 +302,43 @@ done:
     return status;
 }
 
-jali_status structure_solve(jali_context *ctx, structure *s, int32_t count,
-                            const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS])
+// Solve side by side; each refined when `refined`.
+static jali_status solve_all(jali_context *ctx, structure *s, int32_t count, bool refined,
+                             const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS])
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
     size_t unknowns = (size_t)unknowns_of(&s->k), nodes = (size_t)s->sheet->node_count;
     double *x, *b, *r, *y;
-    s->residual = 0;
-    TRY(ARENA(ctx, b, unknowns * (size_t)count));
     TRY(ARENA(ctx, x, unknowns * (size_t)count));
+    TRY(ARENA(ctx, b, unknowns));
     TRY(ARENA(ctx, r, unknowns));
     TRY(ARENA(ctx, y, unknowns));
-    for (int32_t i = 0; i < count; i++)
-        gather_unknowns(s, load + nodes * (size_t)i, b + unknowns * (size_t)i);
-    memcpy(x, b, unknowns * (size_t)count * sizeof *x);
+    for (size_t i = 0; i < (size_t)count; i++) gather_unknowns(s, load + nodes * i, x + unknowns * i);
     TRY(solver_solve(ctx, s->solver, count, x));
     for (size_t i = 0; i < (size_t)count; i++) {
-        TRY(refine(ctx, s, b + unknowns * i, x + unknowns * i, r, y));
+        if (refined) {
+            gather_unknowns(s, load + nodes * i, b);
+            TRY(refine(ctx, s, b, x + unknowns * i, r, y));
+        }
         scatter_unknowns(s, x + unknowns * i, u + nodes * i);
     }
 done:
     arena_rewind(ctx, mark);
     return status;
+}
+
+jali_status structure_solve(jali_context *ctx, structure *s, int32_t count,
+                            const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS])
+{
+    s->residual = 0;
+    return solve_all(ctx, s, count, true, load, u);
+}
+
+jali_status structure_influence(jali_context *ctx, structure *s, int32_t count,
+                                const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS])
+{
+    return solve_all(ctx, s, count, false, load, u);
 }
 
 void structure_free(jali_context *ctx, structure *s)

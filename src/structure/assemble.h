@@ -50,6 +50,10 @@ jali_status structure_refactor(jali_context *ctx, structure *s);
 jali_status structure_solve(jali_context *ctx, structure *s, int32_t count,
                             const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS]);
 
+/// The same for unit and adjoint loads, which only rank: no refinement, so each costs a third.
+jali_status structure_influence(jali_context *ctx, structure *s, int32_t count,
+                                const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS]);
+
 void structure_free(jali_context *ctx, structure *s);
 
 /// The unknowns a node has in this structure, from bit 0 or from bit 2 on.

@@ -272,6 +272,21 @@ done:
     return status;
 }
 
+// Right sides of all cases, side by side: x = f + P (g - S y) from the displacements without bridges.
+static void pull_all(attachments *a, const coupling *m, int32_t count, bool loaded,
+                     const double (*load)[NODE_UNKNOWNS], const double (*base)[NODE_UNKNOWNS], const desk *w,
+                     double *x)
+{
+    size_t unknowns = (size_t)unknowns_of(&a->s->k), nodes = (size_t)a->s->sheet->node_count;
+    for (int32_t k = 0; k < count; k++) {
+        double *here = x + unknowns * (size_t)k;
+        gather_unknowns(a->s, base + nodes * (size_t)k, here);
+        pull(a, m, loaded ? k : -1, here, w->y, w->v);
+        gather_unknowns(a->s, load + nodes * (size_t)k, here);
+        for (int32_t i = 0; i < a->rank; i++) here[a->row[i]] += w->v[i];
+    }
+}
+
 jali_status attached_solve(jali_context *ctx, attachments *a, int32_t count,
                            const double (*load)[NODE_UNKNOWNS], const double (*base)[NODE_UNKNOWNS],
                            bool loaded, double (*u)[NODE_UNKNOWNS])
@@ -281,22 +296,23 @@ jali_status attached_solve(jali_context *ctx, attachments *a, int32_t count,
     size_t unknowns = (size_t)unknowns_of(&a->s->k), nodes = (size_t)a->s->sheet->node_count;
     coupling m;
     desk w;
+    double *x;
     a->residual = 0;
     TRY(couple(ctx, a, &m));
+    TRY(ARENA(ctx, x, unknowns * (size_t)count));
     TRY(ARENA(ctx, w.f, unknowns));
-    TRY(ARENA(ctx, w.x, unknowns));
     TRY(ARENA(ctx, w.r, unknowns));
     TRY(ARENA(ctx, w.d, unknowns));
     TRY(ARENA(ctx, w.y, a->rank));
     TRY(ARENA(ctx, w.v, a->rank));
+    pull_all(a, &m, count, loaded, load, base, &w, x);
+    TRY(solver_solve(ctx, a->s->solver, count, x));
     for (int32_t k = 0; k < count; k++) {
-        gather_unknowns(a->s, base + nodes * (size_t)k, w.x);
-        gather_unknowns(a->s, load + nodes * (size_t)k, w.f);
-        pull(a, &m, loaded ? k : -1, w.x, w.y, w.v);
-        memcpy(w.x, w.f, unknowns * sizeof *w.x);
-        for (int32_t i = 0; i < a->rank; i++) w.x[a->row[i]] += w.v[i];
-        TRY(solver_solve(ctx, a->s->solver, 1, w.x));
-        TRY(refine(ctx, a, &m, loaded ? k : -1, &w));
+        w.x = x + unknowns * (size_t)k;
+        if (loaded) {
+            gather_unknowns(a->s, load + nodes * (size_t)k, w.f);
+            TRY(refine(ctx, a, &m, k, &w));
+        }
         scatter_unknowns(a->s, w.x, u + nodes * (size_t)k);
     }
 done:

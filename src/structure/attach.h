@@ -44,7 +44,7 @@ void attach_again(attachments *a, int32_t name);
 ///          base     [count][node_count] displacements under these loads without bridges (structure_solve)
 ///          loaded   the bridges carry their loads too; count is then the number of load cases. false: for
 ///          unit and
-///                   adjoint loads
+///                   adjoint loads, which are not refined
 ///   out    u        [count][node_count]
 ///   cost   a solution a load case, and F for ends that are new
 jali_status attached_solve(jali_context *ctx, attachments *a, int32_t count,
