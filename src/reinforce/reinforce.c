@@ -318,14 +318,15 @@ done:
 
 // Take back connectors that bear little and without which the stress is no larger than it may be, or than it
 // is. Most are of no use: many are taken at one time, fewer when that did harm, and one alone that does is
-// kept.
+// kept. So many trials, each a solution, and no more.
 static jali_status take_back_useless(jali_context *ctx, search *s, jali_reinforcement *r)
 {
+    enum { MOST_TRIALS = 8 };
     jali_status status;
-    int32_t bearing, all = s->count;
+    int32_t bearing, all = s->count, trial = 0;
     double allowed = fmax(s->opt.limit_mpa, 1.001 * s->now.stress.value);
     TRY(set_idle_apart(ctx, s, &bearing));
-    for (int32_t some = s->count - bearing; some > 0;) {
+    for (int32_t some = s->count - bearing; some > 0 && trial < MOST_TRIALS; trial++) {
         TRY(step(ctx, "reinforce", 0.9));
         all = s->count;
         while (s->count > all - some) withdraw(&s->attached, s->connector[--s->count].name);
@@ -398,6 +399,7 @@ static jali_status prepare(jali_context *ctx, search *s)
     if (!(s->opt.limit_mpa > 0) || !(s->opt.phi_s_mm > 0) || !(s->opt.phi_v_mm > 0) || !(longest > 0))
         return fail(ctx, JALI_BAD_VALUE, "limit, widths and length of connectors must be more than 0");
     attachments_begin(&s->attached, s->structure, 1);
+    s->attached.rough = true; // what is drawn is analysed afresh
     TRY(ALLOCATE(ctx, s->u, s->sheet->node_count));
     TRY(borders_create(ctx, s->sheet, s->chart, &s->borders));
     TRY(find_spans(ctx, s->sheet, &s->borders, s->mask, s->chart, s->opt.phi_s_mm, longest, &s->spans));

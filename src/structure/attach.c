@@ -309,7 +309,7 @@ jali_status attached_solve(jali_context *ctx, attachments *a, int32_t count,
     TRY(solver_solve(ctx, a->s->solver, count, x));
     for (int32_t k = 0; k < count; k++) {
         w.x = x + unknowns * (size_t)k;
-        if (loaded) {
+        if (loaded && !a->rough) {
             gather_unknowns(a->s, load + nodes * (size_t)k, w.f);
             TRY(refine(ctx, a, &m, k, &w));
         }

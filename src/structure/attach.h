@@ -20,6 +20,7 @@ typedef struct attachments {
     int32_t *row;      // [rank] ascending
     double *f;         // [rank][rank] K^-1 there
     double residual;   // of the last solution, as structure's
+    bool rough;        // set by the owner: a search, for which solutions without refinement (1e-8) do
 } attachments;
 
 /// Bridges that are worth a new factor: above this rank the correction costs more (FACTS: about 500).
