@@ -321,7 +321,7 @@ done:
 // kept. So many trials, each a solution, and no more.
 static jali_status take_back_useless(jali_context *ctx, search *s, jali_reinforcement *r)
 {
-    enum { MOST_TRIALS = 8 };
+    enum { MOST_TRIALS = 4 };
     jali_status status;
     int32_t bearing, all = s->count, trial = 0;
     double allowed = fmax(s->opt.limit_mpa, 1.001 * s->now.stress.value);
@@ -408,6 +408,12 @@ done:
     return status;
 }
 
+// A factor costs more the larger the sheet is, a correction by the rank of what is attached.
+static int32_t rank_worth_a_factor(const jali_sheet *sheet)
+{
+    return MAX(RANK_WORTH_A_FACTOR, sheet->node_count / 200);
+}
+
 jali_status jali_reinforce(jali_context *ctx, const jali_sheet *sheet, const jali_bitmap *mask,
                            const jali_chart *chart, const jali_reinforce_options *given,
                            jali_analysis *analysis, jali_reinforcement *r)
@@ -422,7 +428,7 @@ jali_status jali_reinforce(jali_context *ctx, const jali_sheet *sheet, const jal
     *r = (jali_reinforcement){0};
     TRY(prepare(ctx, &s));
     while (r->round_count < s.opt.most_rounds && s.now.stress.value > s.opt.limit_mpa &&
-           s.attached.rank < RANK_WORTH_A_FACTOR) {
+           s.attached.rank < rank_worth_a_factor(sheet)) {
         int32_t before = s.count;
         TRY(step(ctx, "reinforce", (double)r->round_count / s.opt.most_rounds));
         TRY(s.opt.rule == JALI_REINFORCE_PAPER ? lay_by_the_paper(ctx, &s) : lay_best(ctx, &s));
