@@ -30,12 +30,11 @@ static double pixels_of(const span *s, const rank_options *opt)
 }
 
 // The stress that a beam alone would take off a hot spot a visible pixel, F guessed.
-static double guessed_worth(const beam *b, const span *s, const outlook *now, int32_t hotspot,
-                            const double moved[BEAM_MODES], const rank_options *opt)
+static double guessed_worth(const beam *b, const span *s, const outlook *now, const double moved[BEAM_MODES],
+                            const double influence[BEAM_MODES], const rank_options *opt)
 {
-    double influence[BEAM_MODES], relief = 0;
+    double relief = 0;
     double softness = 4 * (length_of(now->u[b->node[0]]) + length_of(now->u[b->node[3]])) / now->load_n;
-    beam_deformation(b, now->adjoint[hotspot], influence);
     for (int m = 0; m < b->mode_count; m++) {
         // A turn's softness: that of a place which a force moves so far a length away.
         bool turns = m == 0 || m == 1 || m == 3;
@@ -112,19 +111,21 @@ static int32_t sieve(const jali_sheet *sheet, const borders *loops, const spans 
     int32_t count = 0, shares = WIDTHS * (now->hotspot_count + 1);
     for (int32_t k = 0; k < WIDTHS * now->hotspot_count; k++)
         podiums[k] = (podium){.places = MIN((k < WIDTHS ? 2 : 1) * SIEVED / shares, MOST_PLACES)};
-    for (int32_t i = 0; i < all->count; i++)
-        for (int w = 0; w < WIDTHS; w++) {
-            beam b;
-            span s = all->span[i];
-            double moved[BEAM_MODES];
+    for (int32_t i = 0; i < all->count; i++) {
+        beam b;
+        span s = all->span[i];
+        double moved[BEAM_MODES], influence[MOST_HOTSPOTS][BEAM_MODES];
+        for (int w = 0; w < WIDTHS; w++) { // deformations are the same in every width
             s.width_mm = times_wider[w] * opt->width_mm;
             beam_along(sheet, loops, &s, material, bending_only, &b);
-            beam_deformation(&b, now->u, moved);
+            if (w == 0) beam_deformation(&b, now->u, moved);
             for (int32_t h = 0; h < now->hotspot_count; h++) {
-                s.worth = guessed_worth(&b, &s, now, h, moved, opt);
+                if (w == 0) beam_deformation(&b, now->adjoint[h], influence[h]);
+                s.worth = guessed_worth(&b, &s, now, moved, influence[h], opt);
                 compete(sheet, loops, &podiums[h * WIDTHS + w], &s);
             }
         }
+    }
     for (int32_t k = 0; k < WIDTHS * now->hotspot_count; k++)
         for (int32_t i = 0; i < podiums[k].count; i++) {
             bool taken = false;

@@ -31,7 +31,7 @@ void stresses_free(jali_context *ctx, stresses *s);
 ///   out    s          free with stresses_free
 ///   fails  JALI_BAD_VALUE (disc), JALI_NO_RESULT (a displacement that is no number), JALI_CANCELLED,
 ///          JALI_NO_MEMORY
-///   cost   O(n), about 3 us a node
+///   cost   O(n)
 jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
                              const double (*u)[6], double disc_mm, stresses *s);
 
