@@ -149,14 +149,14 @@ static jali_status search(jali_context *ctx, job *j, double limit, bool *found)
     opt.limit_mpa = limit;
     opt.most_rounds = j->rounds_left;
     TRY(jali_reinforce(ctx, &j->draft.sheet, &j->optimised->mask, j->chart, &opt, &j->draft.analysis, &r));
-    for (int32_t i = 0; i < r.round_count; i++)
-        TRY(record(ctx, j, r.round[i].stress_mpa, r.round[i].raw_stress_mpa, r.round[i].moved_mm,
-                   s->connectors + r.round[i].connectors, j->draft.sheet.node_count));
     j->rounds_left -= r.round_count;
     s->helpless = r.helpless;
-    s->connectors += r.connectors;
     *found = r.bridges.count > 0;
-    if (*found) {
+    if (*found) { // of a search in vain there is nothing to tell
+        for (int32_t i = 0; i < r.round_count; i++)
+            TRY(record(ctx, j, r.round[i].stress_mpa, r.round[i].raw_stress_mpa, r.round[i].moved_mm,
+                       s->connectors + r.round[i].connectors, j->draft.sheet.node_count));
+        s->connectors += r.connectors;
         TRY(draw(ctx, j, &r.bridges));
         TRY(make_draft(ctx, j));
     }

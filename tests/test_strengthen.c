@@ -39,6 +39,12 @@ static jali_result make(const jali_options *opt)
     jali_result r;
     CHECK_OK(jali_make(ctx, &p, opt, &r));
     jali_picture_free(ctx, &p);
+    const jali_strength *s = &r.strength; // the last round is the result as it is
+    if (s->round_count) {
+        CHECK(s->round[s->round_count - 1].stress_mpa == s->analysis.stress.value);
+        CHECK_INT(s->round[s->round_count - 1].connectors, s->connectors);
+        CHECK_INT(s->round[s->round_count - 1].nodes, s->sheet.node_count);
+    }
     return r;
 }
 
