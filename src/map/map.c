@@ -10,10 +10,10 @@
 #include <jali/png.h>
 
 #include "map/glyphs.h"
+#include "mesh/sides.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { LEGEND_PX = 150, EDGE_PX = 16, BAR_PX = 22, TEXT_SCALE = 2, TICKS = 5 };
 
@@ -213,43 +213,6 @@ static void add_normals(const jali_sheet *sheet, double (*normal)[3])
     }
 }
 
-// Sides that no other triangle has, as pairs of nodes in their triangle's direction. Counted by the node they
-// start at: a border node has one leaving it in each fan.
-typedef struct border_sides {
-    int32_t count;
-    int32_t (*side)[2];
-} border_sides;
-
-static int by_ends(const void *a, const void *b)
-{
-    const int32_t *x = a, *y = b;
-    int32_t xl = MIN(x[0], x[1]), yl = MIN(y[0], y[1]), xh = MAX(x[0], x[1]), yh = MAX(y[0], y[1]);
-    if (xl != yl) return xl < yl ? -1 : 1;
-    return xh < yh ? -1 : xh > yh;
-}
-
-static jali_status find_border(jali_context *ctx, const jali_sheet *sheet, border_sides *b)
-{
-    size_t count = 3 * (size_t)sheet->triangle_count, kept = 0;
-    jali_status status = ALLOCATE(ctx, b->side, count);
-    if (status != JALI_OK) return status;
-    for (int32_t t = 0; t < sheet->triangle_count; t++)
-        for (int i = 0; i < 3; i++) {
-            b->side[3 * t + i][0] = sheet->triangle[t][i];
-            b->side[3 * t + i][1] = sheet->triangle[t][(i + 1) % 3];
-        }
-    qsort(b->side, count, sizeof *b->side, by_ends);
-    for (size_t i = 0; i < count; i++) {
-        if (i + 1 < count && by_ends(b->side[i], b->side[i + 1]) == 0) {
-            i++;
-            continue;
-        }
-        memmove(b->side[kept++], b->side[i], sizeof *b->side);
-    }
-    b->count = (int32_t)kept;
-    return JALI_OK;
-}
-
 void jali_map_release(jali_context *ctx, uint8_t (*colour)[3])
 {
     release(ctx, colour);
@@ -262,17 +225,20 @@ jali_status jali_map_solid(jali_context *ctx, const jali_sheet *sheet, const jal
     jali_status status;
     jali_map_options opt = given ? *given : jali_map_defaults();
     double(*normal)[3] = NULL;
-    border_sides border = {0};
+    sides linked = {0};
     int32_t n = sheet->node_count, triangles = 0;
+    size_t open_sides = 0;
     *mesh = (jali_mesh){0};
     *colour = NULL;
     TRY(check_options(ctx, &opt));
     double top = top_of(a, &opt);
     TRY(ALLOCATE_CLEARED(ctx, normal, n));
-    TRY(find_border(ctx, sheet, &border));
+    TRY(sides_create(ctx, n, sheet->triangle_count, (const int32_t(*)[3])sheet->triangle, &linked));
+    for (int32_t t = 0; t < sheet->triangle_count; t++)
+        for (int i = 0; i < 3; i++) open_sides += linked.beside[4 * t + i] == NO_SIDE;
     TRY(ALLOCATE(ctx, mesh->vertex, 2 * (size_t)n));
     TRY(ALLOCATE(ctx, *colour, 2 * (size_t)n));
-    TRY(ALLOCATE(ctx, mesh->triangle, 2 * ((size_t)sheet->triangle_count + (size_t)border.count)));
+    TRY(ALLOCATE(ctx, mesh->triangle, 2 * ((size_t)sheet->triangle_count + open_sides)));
     add_normals(sheet, normal);
     for (int32_t i = 0; i < 2 * n; i++) {
         double half = (i < n ? 0.5 : -0.5) * sheet->thickness_mm[i % n];
@@ -287,11 +253,13 @@ jali_status jali_map_solid(jali_context *ctx, const jali_sheet *sheet, const jal
         memcpy(mesh->triangle[triangles++], (int32_t[]){n + c[2], n + c[1], n + c[0]},
                sizeof *mesh->triangle);
     }
-    for (int32_t i = 0; i < border.count; i++) {
-        int32_t from = border.side[i][0], to = border.side[i][1];
-        memcpy(mesh->triangle[triangles++], (int32_t[]){to, from, n + from}, sizeof *mesh->triangle);
-        memcpy(mesh->triangle[triangles++], (int32_t[]){to, n + from, n + to}, sizeof *mesh->triangle);
-    }
+    for (int32_t t = 0; t < sheet->triangle_count; t++)
+        for (int i = 0; i < 3; i++) {
+            if (linked.beside[4 * t + i] != NO_SIDE) continue;
+            int32_t from = sheet->triangle[t][(i + 1) % 3], to = sheet->triangle[t][(i + 2) % 3];
+            memcpy(mesh->triangle[triangles++], (int32_t[]){to, from, n + from}, sizeof *mesh->triangle);
+            memcpy(mesh->triangle[triangles++], (int32_t[]){to, n + from, n + to}, sizeof *mesh->triangle);
+        }
     mesh->vertex_count = 2 * n;
     mesh->triangle_count = triangles;
 done:
@@ -300,7 +268,7 @@ done:
         release(ctx, *colour);
         *colour = NULL;
     }
-    release(ctx, border.side);
+    sides_free(ctx, &linked);
     release(ctx, normal);
     return status;
 }

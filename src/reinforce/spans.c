@@ -5,6 +5,7 @@
 // and the sheet's outline differ (by less than half a pixel), the ray begins a pixel out. Checked:
 // tests/test_reinforce.c: combs, rings, parts a known way apart.
 #include "reinforce/spans.h"
+#include "mesh/sides.h"
 
 #include <math.h>
 
@@ -21,36 +22,21 @@ void borders_free(jali_context *ctx, borders *b)
     *b = (borders){0};
 }
 
-// Sides without a twin, found through the triangles around each node: a side (i, j) of some triangle, and no
-// triangle with (j, i).
 static jali_status link_borders(jali_context *ctx, const jali_sheet *sheet, borders *b)
 {
     jali_status status;
-    int32_t *first = NULL, *out = NULL;
-    int32_t n = sheet->node_count;
-    TRY(ALLOCATE_CLEARED(ctx, first, n + 1));
-    TRY(ALLOCATE(ctx, out, 3 * (size_t)sheet->triangle_count));
+    sides linked = {0};
+    TRY(sides_create(ctx, sheet->node_count, sheet->triangle_count, (const int32_t(*)[3])sheet->triangle,
+                     &linked));
     for (int32_t t = 0; t < sheet->triangle_count; t++)
-        for (int i = 0; i < 3; i++) first[sheet->triangle[t][i]]++;
-    for (int32_t i = 0, sum = 0; i <= n; i++) {
-        int32_t here = i < n ? first[i] : 0;
-        first[i] = sum;
-        sum += here;
-    }
-    for (int32_t t = 0; t < sheet->triangle_count; t++)
-        for (int i = 0; i < 3; i++) out[first[sheet->triangle[t][i]]++] = sheet->triangle[t][(i + 1) % 3];
-    for (int32_t i = 0; i < n; i++) // first[i] now ends node i's
-        for (int32_t k = i ? first[i - 1] : 0; k < first[i]; k++) {
-            int32_t j = out[k];
-            bool twin = false;
-            for (int32_t m = j ? first[j - 1] : 0; m < first[j] && !twin; m++) twin = out[m] == i;
-            if (twin) continue;
-            b->next[i] = j;
-            b->last[j] = i;
+        for (int i = 0; i < 3; i++) {
+            if (linked.beside[4 * t + i] != NO_SIDE) continue;
+            int32_t from = sheet->triangle[t][(i + 1) % 3], to = sheet->triangle[t][(i + 2) % 3];
+            b->next[from] = to;
+            b->last[to] = from;
         }
 done:
-    release(ctx, first);
-    release(ctx, out);
+    sides_free(ctx, &linked);
     return status;
 }
 
