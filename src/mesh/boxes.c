@@ -1,20 +1,10 @@
 // Building the box hierarchy: Morton codes of the centres, a radix sort, boxes bottom-up.
 #include "mesh/boxes.h"
+#include "base/curve.h"
 
 #include <math.h>
 
 enum { CODE_BITS = 42, DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS }; // 14 bits an axis, four passes
-
-// 14 bits spread out to every third place.
-static uint64_t spread(uint64_t x)
-{
-    x = (x | x << 32) & UINT64_C(0x001f00000000ffff);
-    x = (x | x << 16) & UINT64_C(0x001f0000ff0000ff);
-    x = (x | x << 8) & UINT64_C(0x100f00f00f00f00f);
-    x = (x | x << 4) & UINT64_C(0x10c30c30c30c30c3);
-    x = (x | x << 2) & UINT64_C(0x1249249249249249);
-    return x;
-}
 
 // Cells are cubes, so that a flat plate spends no bits on its thickness alone.
 static void morton_codes(int32_t count, const box *items, uint64_t *code)
@@ -34,7 +24,7 @@ static void morton_codes(int32_t count, const box *items, uint64_t *code)
         code[i] = 0;
         for (int k = 0; k < 3; k++) {
             double centre = 0.5 * ((double)items[i].low[k] + (double)items[i].high[k]);
-            code[i] |= spread((uint64_t)((centre - low[k]) * scale)) << k;
+            code[i] |= every_third_bit((uint64_t)((centre - low[k]) * scale)) << k;
         }
     }
 }

@@ -7,13 +7,9 @@
 //          the input, the curve keeps the walks and the memory local.
 // Checked: tests/test_plane.c.
 #include "plane/order.h"
+#include "base/curve.h"
 
-enum { HILBERT_BITS = 16, FIRST_ROUND_POINTS = 256, DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
-
-typedef struct keyed {
-    uint64_t key;
-    int32_t index;
-} keyed;
+enum { HILBERT_BITS = 16, FIRST_ROUND_POINTS = 256 };
 
 // Position of cell (x, y) on the Hilbert curve over 2^16 x 2^16 cells.
 static uint64_t hilbert_position(uint32_t x, uint32_t y)
@@ -61,30 +57,14 @@ static void give_keys(const int32_t (*point)[2], int32_t count, keyed *item)
     }
 }
 
-// One stable pass of a radix sort.
-static void sort_digit(const keyed *from, int32_t count, int shift, keyed *to)
-{
-    int32_t start[DIGITS + 1] = {0};
-    for (int32_t i = 0; i < count; i++) start[(from[i].key >> shift & (DIGITS - 1)) + 1]++;
-    for (int32_t d = 0; d < DIGITS; d++) start[d + 1] += start[d];
-    for (int32_t i = 0; i < count; i++) to[start[from[i].key >> shift & (DIGITS - 1)]++] = from[i];
-}
-
 jali_status insertion_order(jali_context *ctx, const int32_t (*point)[2], int32_t count, int32_t *order)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    keyed *item, *other;
+    keyed *item;
     TRY(ARENA(ctx, item, count));
-    TRY(ARENA(ctx, other, count));
     give_keys(point, count, item);
-    for (int shift = 0; shift < 2 * HILBERT_BITS + 6; shift += DIGIT_BITS) {
-        sort_digit(item, count, shift, other);
-        keyed *swapped = item;
-        item = other;
-        other = swapped;
-    }
-    for (int32_t i = 0; i < count; i++) order[i] = item[i].index;
+    TRY(order_by_key(ctx, item, count, 2 * HILBERT_BITS + 6, order));
 done:
     arena_rewind(ctx, mark);
     return status;
