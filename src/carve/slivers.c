@@ -11,6 +11,7 @@
 
 #include "mesh/sides.h"
 #include "plane/triangulation.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -34,11 +35,6 @@ static void normal(const mending *m, int skin, int32_t a, int32_t b, int32_t c, 
     const double *p = place(m, skin, a), *q = place(m, skin, b), *r = place(m, skin, c);
     double u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
     for (int k = 0; k < 3; k++) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 static double length2(const mending *m, int skin, int32_t a, int32_t b)

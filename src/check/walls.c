@@ -15,6 +15,7 @@
 // Checked: tests/test_walls.c
 #include "check/walls.h"
 #include "mesh/rays.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -35,16 +36,6 @@ typedef struct survey {
     double side;          // -1 into the solid, 1 into the void
     double widest_mm;     // of the first ball
 } survey;
-
-static void cross(const double u[3], const double v[3], double n[3])
-{
-    for (int k = 0; k < 3; k++) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-}
-
-static double dot(const double u[3], const double v[3])
-{
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
 
 static void edge(const float corner[3][3], int32_t from, int32_t to, double e[3])
 {

@@ -11,6 +11,7 @@
 
 #include "map/glyphs.h"
 #include "mesh/sides.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -198,14 +199,10 @@ static void add_normals(const jali_sheet *sheet, double (*normal)[3])
 {
     for (int32_t t = 0; t < sheet->triangle_count; t++) {
         const int32_t *c = sheet->triangle[t];
-        double a[3], b[3];
-        for (int k = 0; k < 3; k++) {
-            a[k] = sheet->node[c[1]][k] - sheet->node[c[0]][k];
-            b[k] = sheet->node[c[2]][k] - sheet->node[c[0]][k];
-        }
+        double v[3];
+        area_vector(sheet->node[c[0]], sheet->node[c[1]], sheet->node[c[2]], v);
         for (int i = 0; i < 3; i++)
-            for (int k = 0; k < 3; k++)
-                normal[c[i]][k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+            for (int k = 0; k < 3; k++) normal[c[i]][k] += v[k];
     }
     for (int32_t i = 0; i < sheet->node_count; i++) {
         double *n = normal[i], size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);

@@ -17,6 +17,7 @@
 #include "mesh/offset.h"
 #include "mesh/intersect.h"
 #include "mesh/offset_ways.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -44,16 +45,6 @@ typedef struct offsetting {
     int32_t (*triangle)[3]; // [2 triangle_count + 2 rim sides]
     int32_t all_triangles;
 } offsetting;
-
-static double dot(const double u[3], const double v[3])
-{
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
-static void subtract(const double a[3], const double b[3], double difference[3])
-{
-    for (int k = 0; k < 3; k++) difference[k] = a[k] - b[k];
-}
 
 static void add_cross(const double u[3], const double v[3], double share, double sum[3])
 {

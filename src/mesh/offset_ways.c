@@ -9,6 +9,7 @@
 //
 // Checked: tests/test_offset.c: cubes, wedges, spheres, rims.
 #include "mesh/offset_ways.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -19,11 +20,6 @@ enum { STEPS = 3, ROUNDS = 20, REPAIRS = 64 };
 typedef struct fit {
     double a[6], b[3], weight; // sums of w n n^T (xx, xy, xz, yy, yz, zz), w n and w
 } fit;
-
-static double dot(const double u[3], const double v[3])
-{
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
 
 static double unit_normal(const jali_mesh *mesh, int32_t t, double n[3])
 {

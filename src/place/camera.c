@@ -5,18 +5,9 @@
 //          perspective, so that it looks right from the eye.
 // Checked: tests/test_place_on.c.
 #include "place/lay.h"
+#include "base/vector.h"
 
 #include <math.h>
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
 
 static bool normalise(double a[3])
 {

@@ -9,6 +9,7 @@
 // Limits:  where ways around a bump meet the places disagree; flattening mends that.
 // Checked: tests/test_flatten.c.
 #include "place/disc.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -36,16 +37,6 @@ typedef struct growing {
     queue next;
     disc *d;
 } growing;
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
 
 static void scale_to_one(double a[3])
 {

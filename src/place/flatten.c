@@ -9,6 +9,7 @@
 // Checked: tests/test_flatten.c: planes, cylinders, cones and caps against formulas; rough surfaces by seeds.
 #include "place/disc.h"
 #include "place/lay.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,16 +34,6 @@ typedef struct flat_work {
     double stretch[2];    // least and largest inside the window
     int32_t worst;        // the face where it is further from 1
 } flat_work;
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
 
 static void face_edges(const jali_mesh *m, int32_t face, double a[3], double b[3])
 {

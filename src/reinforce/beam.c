@@ -8,22 +8,11 @@
 // J of a rectangle a >= b: a b^3 (1/3 - 0.21 b/a (1 - b^4 / 12 a^4)) (Roark, table 10.7). A plate under
 // transverse load has twist, bow and shear out of the wall alone.
 #include "reinforce/beam.h"
+#include "base/vector.h"
 
 #include <math.h>
 
 static const double SHEAR_FACTOR = 5.0 / 6;
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static void make_unit(double a[3])
 {

@@ -5,15 +5,9 @@
 // tests/test_reinforce.c: against differences.
 #include "reinforce/hotspots.h"
 #include "structure/element.h"
+#include "base/vector.h"
 
 #include <math.h>
-
-static double distance2(const double a[3], const double b[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return sum;
-}
 
 int32_t find_hotspots(const jali_sheet *sheet, const float *mean_mpa, double apart_mm,
                       int32_t node[MOST_HOTSPOTS])
@@ -27,7 +21,7 @@ int32_t find_hotspots(const jali_sheet *sheet, const float *mean_mpa, double apa
             if (best >= 0 && mean_mpa[i] <= mean_mpa[best]) continue;
             bool far = true;
             for (int32_t k = 0; k < count && far; k++)
-                far = distance2(sheet->node[i], sheet->node[node[k]]) > apart_mm * apart_mm;
+                far = distance(sheet->node[i], sheet->node[node[k]]) > apart_mm;
             if (far) best = i;
         }
         if (count == 0 && best >= 0) highest = mean_mpa[best];
@@ -88,15 +82,10 @@ static void add_triangle(const jali_sheet *sheet, const jali_material *material,
 
 static double area_of(const jali_sheet *sheet, int32_t t)
 {
-    const double *a = sheet->node[sheet->triangle[t][0]], *b = sheet->node[sheet->triangle[t][1]],
-                 *c = sheet->node[sheet->triangle[t][2]];
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        int l = (k + 1) % 3;
-        double part = (b[k] - a[k]) * (c[l] - a[l]) - (b[l] - a[l]) * (c[k] - a[k]);
-        sum += part * part;
-    }
-    return sqrt(sum) / 2;
+    const int32_t *c = sheet->triangle[t];
+    double n[3];
+    area_vector(sheet->node[c[0]], sheet->node[c[1]], sheet->node[c[2]], n);
+    return sqrt(dot(n, n));
 }
 
 static bool near_node(const jali_sheet *sheet, int32_t t, int32_t node, double radius_mm)
@@ -106,7 +95,7 @@ static bool near_node(const jali_sheet *sheet, int32_t t, int32_t node, double r
     if (c[0] == node || c[1] == node || c[2] == node) return true;
     for (int k = 0; k < 3; k++)
         middle[k] = (sheet->node[c[0]][k] + sheet->node[c[1]][k] + sheet->node[c[2]][k]) / 3;
-    return distance2(middle, sheet->node[node]) <= radius_mm * radius_mm;
+    return distance(middle, sheet->node[node]) <= radius_mm;
 }
 
 void stress_gradient(const jali_sheet *sheet, const jali_material *material, const double (*u)[6],

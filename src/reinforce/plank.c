@@ -5,6 +5,7 @@
 // the same. Columns of nodes between them are straight mixtures; triangles zip from column to column.
 // Checked: tests/test_reinforce.c: area, orientation, every end node used once, joined sheets 2-manifold.
 #include "reinforce/plank.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -17,13 +18,6 @@ void plank_free(jali_context *ctx, plank *p)
     release(ctx, p->thickness_mm);
     release(ctx, p->triangle);
     *p = (plank){0};
-}
-
-static double distance(const double a[3], const double b[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++) sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return sqrt(sum);
 }
 
 typedef struct chain {
@@ -145,22 +139,12 @@ done:
     return status;
 }
 
-// Twice the area vector of a triangle; the longest side too.
-static double area_vector(const double *a, const double *b, const double *c, double n[3])
-{
-    for (int k = 0; k < 3; k++) {
-        int l = (k + 1) % 3, m = (k + 2) % 3;
-        n[k] = (b[l] - a[l]) * (c[m] - a[m]) - (b[m] - a[m]) * (c[l] - a[l]);
-    }
-    return fmax(distance(a, b), fmax(distance(b, c), distance(c, a)));
-}
-
 // Does a triangle face the way `up` does, and is no thinner than a hundredth of its longest side?
 static bool well_shaped(const double *a, const double *b, const double *c, const double up[3])
 {
-    double n[3], longest = area_vector(a, b, c, n);
-    return n[0] * up[0] + n[1] * up[1] + n[2] * up[2] > 0 &&
-           sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) >= 0.01 * longest * longest;
+    double n[3], longest = fmax(distance(a, b), fmax(distance(b, c), distance(c, a)));
+    area_vector(a, b, c, n);
+    return dot(n, up) > 0 && 2 * sqrt(dot(n, n)) >= 0.01 * longest * longest;
 }
 
 static bool all_well_shaped(const plank *p)

@@ -8,6 +8,7 @@
 // the load. Checked: tests/test_reinforce.c: against a new factor.
 #include "reinforce/rank.h"
 #include "reinforce/plank.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,14 +45,6 @@ static double guessed_worth(const beam *b, const span *s, const outlook *now, co
     return relief / pixels_of(s, opt);
 }
 
-static double gap(const jali_sheet *sheet, int32_t a, int32_t b)
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum += (sheet->node[a][k] - sheet->node[b][k]) * (sheet->node[a][k] - sheet->node[b][k]);
-    return sqrt(sum);
-}
-
 // Least distance between two straight connectors, each at nine places.
 double spans_apart(const jali_sheet *sheet, const span *a, const span *b)
 {
@@ -75,8 +68,10 @@ double spans_apart(const jali_sheet *sheet, const span *a, const span *b)
 static bool same_place(const jali_sheet *sheet, const span *a, const span *b)
 {
     if (a->width_mm != b->width_mm) return false;
-    double straight = fmax(gap(sheet, a->node[0], b->node[0]), gap(sheet, a->node[1], b->node[1]));
-    double turned = fmax(gap(sheet, a->node[0], b->node[1]), gap(sheet, a->node[1], b->node[0]));
+    double straight = fmax(distance(sheet->node[a->node[0]], sheet->node[b->node[0]]),
+                           distance(sheet->node[a->node[1]], sheet->node[b->node[1]]));
+    double turned = fmax(distance(sheet->node[a->node[0]], sheet->node[b->node[1]]),
+                         distance(sheet->node[a->node[1]], sheet->node[b->node[0]]));
     return fmin(straight, turned) < 2 * a->width_mm;
 }
 

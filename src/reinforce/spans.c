@@ -6,6 +6,7 @@
 // tests/test_reinforce.c: combs, rings, parts a known way apart.
 #include "reinforce/spans.h"
 #include "mesh/sides.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -105,14 +106,6 @@ int32_t border_near(const borders *b, const jali_sheet *sheet, const double at[2
     return best;
 }
 
-static double node_distance(const jali_sheet *sheet, int32_t a, int32_t b)
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum += (sheet->node[a][k] - sheet->node[b][k]) * (sheet->node[a][k] - sheet->node[b][k]);
-    return sqrt(sum);
-}
-
 // White at a place of the chart; beyond the grid nothing can be reached.
 typedef enum ground { VOID_GROUND, SOLID_GROUND, NO_GROUND } ground;
 
@@ -161,7 +154,7 @@ static jali_status spans_from(jali_context *ctx, const jali_sheet *sheet, const 
         int32_t to = cast(sheet, b, mask, chart, from,
                           (double[]){c * out[0] - s * out[1], s * out[0] + c * out[1]}, longest_px);
         if (to < 0 || to == from || to == b->next[from] || to == b->last[from]) continue;
-        double length = node_distance(sheet, from, to);
+        double length = distance(sheet->node[from], sheet->node[to]);
         if (length > longest_mm) continue;
         jali_status status = GROW(ctx, found->span, found->capacity, (size_t)found->count + 1);
         if (status != JALI_OK) return status;
@@ -189,7 +182,7 @@ jali_status find_spans(jali_context *ctx, const jali_sheet *sheet, const borders
             }
             int32_t next = b->next[i];
             if (!on_border(sheet, b, next)) break;
-            since += node_distance(sheet, i, next);
+            since += distance(sheet->node[i], sheet->node[next]);
             i = next;
         } while (!done_with[i]);
         TRY(step(ctx, "reinforce", 0));

@@ -7,6 +7,7 @@
 //          triangle.
 // Checked: tests/test_sheet.c.
 #include "sheet/chart_lift.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -24,16 +25,6 @@ void chart_lift_free(jali_context *ctx, chart_lift *l)
 }
 
 // --- Curvature
-
-static void subtract(const double a[3], const double b[3], double d[3])
-{
-    for (int k = 0; k < 3; k++) d[k] = a[k] - b[k];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // Normals at vertices, weighted by area.
 static void add_normals(const jali_mesh *mesh, double (*normal)[3])

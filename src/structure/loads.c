@@ -5,38 +5,23 @@
 // too much hoop stress. Checked: tests/test_loads.c: sums of forces, spots, what is held.
 #include "structure/loads.h"
 #include "structure/element.h"
+#include "base/vector.h"
 
 #include <math.h>
 
 static const double GRAVITY = 9.80665e-6; // N a mm3 of 1 g/cm3
 
-static void subtract(const double a[3], const double b[3], double d[3])
-{
-    for (int k = 0; k < 3; k++) d[k] = a[k] - b[k];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-// Normal of a triangle, as long as its area.
-static void area_vector(const jali_sheet *sheet, int32_t t, double v[3])
+static void area_at(const jali_sheet *sheet, int32_t t, double v[3])
 {
     const int32_t *c = sheet->triangle[t];
-    double a[3], b[3];
-    subtract(sheet->node[c[1]], sheet->node[c[0]], a);
-    subtract(sheet->node[c[2]], sheet->node[c[0]], b);
-    v[0] = (a[1] * b[2] - a[2] * b[1]) / 2;
-    v[1] = (a[2] * b[0] - a[0] * b[2]) / 2;
-    v[2] = (a[0] * b[1] - a[1] * b[0]) / 2;
+    area_vector(sheet->node[c[0]], sheet->node[c[1]], sheet->node[c[2]], v);
 }
 
 double sheet_area(const jali_sheet *sheet)
 {
     double sum = 0, v[3];
     for (int32_t t = 0; t < sheet->triangle_count; t++) {
-        area_vector(sheet, t, v);
+        area_at(sheet, t, v);
         sum += sqrt(dot(v, v));
     }
     return sum;
@@ -76,7 +61,7 @@ static void press(const jali_sheet *sheet, double pressure_mpa, double (*force)[
         const int32_t *c = sheet->triangle[t];
         double node[3][3], v[3], load[3][6] = {0};
         for (int i = 0; i < 3; i++) memcpy(node[i], sheet->node[c[i]], sizeof node[i]);
-        area_vector(sheet, t, v);
+        area_at(sheet, t, v);
         if (sheet->flat)
             for (int i = 0; i < 3; i++) load[i][2] = -pressure_mpa * v[2] / 3;
         else
@@ -91,7 +76,7 @@ static void weigh(const jali_sheet *sheet, double n_per_mm3, const double unit[3
     for (int32_t t = 0; t < sheet->triangle_count; t++) {
         const int32_t *c = sheet->triangle[t];
         double v[3];
-        area_vector(sheet, t, v);
+        area_at(sheet, t, v);
         double thickness =
             (sheet->thickness_mm[c[0]] + sheet->thickness_mm[c[1]] + sheet->thickness_mm[c[2]]) / 3;
         double third = n_per_mm3 * sqrt(dot(v, v)) * thickness / 3;
@@ -134,7 +119,7 @@ static double spot_area(const jali_sheet *sheet, int32_t node, double radius, do
     memset(sum, 0, 3 * sizeof *sum);
     for (int32_t t = 0; t < sheet->triangle_count; t++) {
         if (!in_spot(sheet, t, node, radius)) continue;
-        area_vector(sheet, t, v);
+        area_at(sheet, t, v);
         for (int k = 0; k < 3; k++) sum[k] += v[k];
         area += sqrt(dot(v, v));
     }
@@ -148,7 +133,7 @@ static void push_spot(const jali_sheet *sheet, int32_t node, double radius, cons
     double v[3], area = spot_area(sheet, node, radius, v);
     for (int32_t t = 0; t < sheet->triangle_count; t++) {
         if (!in_spot(sheet, t, node, radius)) continue;
-        area_vector(sheet, t, v);
+        area_at(sheet, t, v);
         double share = sqrt(dot(v, v)) / area / 3;
         for (int c = 0; c < 3; c++)
             for (int k = 0; k < 3; k++) force[sheet->triangle[t][c]][k] += share * n[k];

@@ -15,6 +15,7 @@
 // Checked: tests/test_recover.c, tests/test_published.c.
 #include "structure/recover.h"
 #include "structure/average.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -167,11 +168,6 @@ static int32_t gather_patch(const recovering *r, int32_t node, int32_t fan, int3
             if (touches) patch[count++] = next;
         }
     return count;
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 // A vector of a plane with normal `from`, turned with that plane onto the one with normal `to`.
