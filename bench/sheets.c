@@ -94,23 +94,6 @@ static jali_status measure(jali_context *ctx, const settings *set, const bench_r
 
 // --- Surfaces
 
-typedef struct surface_run {
-    const char *picture;
-    double width_mm;
-    const char *surface; // %s is the data folder
-    jali_placing placing;
-} surface_run;
-
-static const surface_run SURFACE_RUNS[] = {
-    {"portrait", 124, "vase:h=326,r=105", JALI_PLACE_WRAP},
-    {"monroe-like", 70, "cylinder:r=35.5,h=74", JALI_PLACE_WRAP},
-    {"dense", 70, "cylinder:r=35.5,h=90", JALI_PLACE_WRAP},
-    {"plum", 85, "%s/meshes/bunny.obj:up=y,scale=145.2", JALI_PLACE_PROJECT},
-    {"scenery", 80, "%s/meshes/bunny.obj:up=y,scale=145.2", JALI_PLACE_PROJECT},
-    {"scenery", 85, "vase:h=200", JALI_PLACE_WRAP},
-};
-enum { SURFACE_RUN_COUNT = sizeof SURFACE_RUNS / sizeof *SURFACE_RUNS };
-
 static void write_off(const char *path, const jali_sheet *sheet)
 {
     FILE *file = fopen(path, "w");
@@ -211,9 +194,9 @@ int main(int argc, char **argv)
         if ((!set.only || !strcmp(set.only, bench_runs[i].name)) &&
             measure(ctx, &set, &bench_runs[i]) != JALI_OK)
             status = JALI_BROKEN;
-    for (int i = 0; i < SURFACE_RUN_COUNT && !set.svg; i++)
-        if ((!set.only || !strcmp(set.only, SURFACE_RUNS[i].picture)) &&
-            measure_surface(ctx, &set, &SURFACE_RUNS[i]) != JALI_OK)
+    for (int i = 0; i < SURFACE_RUNS && !set.svg; i++)
+        if ((!set.only || !strcmp(set.only, surface_runs[i].picture)) &&
+            measure_surface(ctx, &set, &surface_runs[i]) != JALI_OK)
             status = JALI_BROKEN;
     jali_context_free(ctx);
     return status != JALI_OK;

@@ -6,29 +6,14 @@
 // on. phi 0.1 / 0.3 / 0.5 mm, walls of 2 mm. Times are medians, of whole runs and of their stages; "3MF" is
 // compressing and writing. Exit 1 when a promise is not kept.
 #include "bench.h"
+#include "runs.h"
 
 #include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct surface_run {
-    const char *picture;
-    double width_mm;
-    const char *surface; // %s is the data folder
-    jali_placing placing;
-} surface_run;
-
-static const surface_run RUNS[] = {
-    {"portrait", 124, "vase:h=326,r=105", JALI_PLACE_WRAP},
-    {"plum", 85, "%s/meshes/bunny.obj:up=y,scale=145.2", JALI_PLACE_PROJECT},
-    {"monroe-like", 70, "cylinder:r=35.5,h=74", JALI_PLACE_WRAP},
-    {"dense", 70, "cylinder:r=35.5,h=90", JALI_PLACE_WRAP},
-    {"dense", 70, "%s/meshes/bunny.obj:up=y,scale=145.2", JALI_PLACE_PROJECT},
-    {"scenery", 85, "vase:h=200", JALI_PLACE_WRAP},
-    {"scenery", 80, "%s/meshes/bunny.obj:up=y,scale=145.2", JALI_PLACE_PROJECT},
-};
-enum { RUN_COUNT = sizeof RUNS / sizeof *RUNS, MOST_RUNS = 21 };
+enum { MOST_RUNS = 21 };
 
 typedef struct timing {
     double whole, image, place, carve, check, file; // ms
@@ -134,7 +119,7 @@ int main(int argc, char **argv)
            "added a "
            "vertex | stretch | thinnest wall, mm | promises "
            "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (int32_t k = 0; k < RUN_COUNT; k++) {
+    for (int32_t k = 0; k < SURFACE_RUNS; k++) {
         timing t[MOST_RUNS];
         outcome o = {0};
         double peak_mb = 0;
@@ -144,11 +129,11 @@ int main(int argc, char **argv)
             jali_context *ctx;
             own.threads = threads;
             if (jali_context_create(&own, &ctx) != JALI_OK) return 1;
-            done = run_once(ctx, data, &RUNS[k], &t[i], &o);
+            done = run_once(ctx, data, &surface_runs[k], &t[i], &o);
             peak_mb = (double)jali_peak_memory_bytes(ctx) / 1e6;
             jali_context_free(ctx);
         }
-        if (done) print_row(&RUNS[k], t, runs, &o, peak_mb);
+        if (done) print_row(&surface_runs[k], t, runs, &o, peak_mb);
         all_kept &= done && o.kept;
     }
     return all_kept ? 0 : 1;

@@ -52,27 +52,6 @@ static void require_promises(jali_context *ctx, const jali_options *opt, const j
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    if (size < PARAMETERS) return -1;
-    jali_context_options own = jali_context_defaults();
-    own.threads = 1 + data[11] % 3;
-    own.max_memory_bytes = (uint64_t)1 << 30;
-    jali_context *ctx;
-    REQUIRE(jali_context_create(&own, &ctx) == JALI_OK);
-    int32_t width = 1 + data[0] % MOST_SIDE_PX, height = 1 + data[1] % MOST_SIDE_PX;
-    jali_picture picture = {width, height, grey_of(data + PARAMETERS, size - PARAMETERS, width, height)};
-    jali_options opt = settings(data, width, height);
-    jali_result result;
-    jali_status status = jali_make(ctx, &picture, &opt, &result);
-    if (status == JALI_OK)
-        require_promises(ctx, &opt, &result);
-    else {
-        REQUIRE(status == JALI_BAD_INPUT || status == JALI_BAD_VALUE || status == JALI_NO_RESULT ||
-                status == JALI_LIMIT);
-        REQUIRE(strlen(jali_message(ctx)) > 0);
-        REQUIRE(result.mesh.vertex == NULL && result.optimised.mask.word == NULL);
-    }
-    jali_result_free(ctx, &result);
-    free(picture.grey);
-    jali_context_free(ctx);
-    return 0;
+    static const drawn_run run = {PARAMETERS, MOST_SIDE_PX, settings, require_promises};
+    return run_drawn(&run, data, size);
 }

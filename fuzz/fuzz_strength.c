@@ -46,8 +46,9 @@ static jali_options settings(const uint8_t *p, int32_t width_px, int32_t height_
     return opt;
 }
 
-static void require_strength(const jali_options *opt, const jali_result *r)
+static void require_strength(jali_context *ctx, const jali_options *opt, const jali_result *r)
 {
+    (void)ctx;
     const jali_strength *s = &r->strength;
     const jali_analysis *a = &s->analysis;
     REQUIRE(s->round_count >= 1 && a->node_count == s->sheet.node_count && a->node_count > 0);
@@ -61,6 +62,8 @@ static void require_strength(const jali_options *opt, const jali_result *r)
     for (int32_t i = 0; i < s->round_count; i++)
         REQUIRE(isfinite(s->round[i].stress_mpa) && s->round[i].connectors >= 0);
     REQUIRE(s->connectors == 0 || opt->strengthen.reinforce.rule != JALI_REINFORCE_NONE);
+    REQUIRE(r->printable && r->closed && r->one_piece);
+    require_sound(&r->mesh);
     if (!s->sound) {
         REQUIRE(s->advice.load_share > 0 && s->advice.load_share < 1 && isfinite(s->advice.thickness_mm));
         REQUIRE(isfinite(s->advice.unpierced_mpa));
@@ -69,29 +72,6 @@ static void require_strength(const jali_options *opt, const jali_result *r)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    if (size < PARAMETERS) return -1;
-    jali_context_options own = jali_context_defaults();
-    own.threads = 1 + data[13] % 3;
-    own.max_memory_bytes = (uint64_t)1 << 30;
-    jali_context *ctx;
-    REQUIRE(jali_context_create(&own, &ctx) == JALI_OK);
-    int32_t width = 1 + data[0] % MOST_SIDE_PX, height = 1 + data[1] % MOST_SIDE_PX;
-    jali_picture picture = {width, height, grey_of(data + PARAMETERS, size - PARAMETERS, width, height)};
-    jali_options opt = settings(data, width, height);
-    jali_result result;
-    jali_status status = jali_make(ctx, &picture, &opt, &result);
-    if (status == JALI_OK) {
-        require_strength(&opt, &result);
-        REQUIRE(result.printable && result.closed && result.one_piece);
-        require_sound(&result.mesh);
-    } else {
-        REQUIRE(status == JALI_BAD_INPUT || status == JALI_BAD_VALUE || status == JALI_NO_RESULT ||
-                status == JALI_LIMIT);
-        REQUIRE(strlen(jali_message(ctx)) > 0);
-        REQUIRE(result.mesh.vertex == NULL && result.strength.sheet.node == NULL);
-    }
-    jali_result_free(ctx, &result);
-    free(picture.grey);
-    jali_context_free(ctx);
-    return 0;
+    static const drawn_run run = {PARAMETERS, MOST_SIDE_PX, settings, require_strength};
+    return run_drawn(&run, data, size);
 }
