@@ -3,6 +3,7 @@
 #define CLI_OPTIONS_H
 
 #include "cli.h"
+#include "base/words.h"
 
 enum { SENTENCE_BYTES = 512 };
 
@@ -22,8 +23,5 @@ void settle_options(settings *set);
 
 /// The options a verb takes, a line each.
 void print_options(const verb *v);
-
-/// The name in the list that is nearest to what was typed; NULL when none is near.
-const char *nearest_name(const char *typed, const char *const *name, int32_t count);
 
 #endif

@@ -30,6 +30,7 @@
 #include <jali/place.h>
 #include <jali/png.h>
 #include <jali/predict.h>
+#include <jali/printer.h>
 #include <jali/read.h>
 #include <jali/reinforce.h>
 #include <jali/render.h>
