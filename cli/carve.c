@@ -11,13 +11,13 @@ static jali_status describe(jali_context *ctx, const settings *set, const jali_r
 {
     const jali_optimise_options *printer = &set->make.optimise;
     double pixel_mm = jali_chart_pixel_mm(&r->chart);
-    char words[400];
+    char words[500];
     snprintf(words, sizeof words,
-             "jali %s: %.4g x %.4g mm, phi %g / %g / %g mm, frame %g mm, thickness %g mm%s%s%.100s",
+             "jali %s: %.4g x %.4g mm, %s%sphi %g / %g / %g mm, frame %g mm, thickness %g mm%s%s%.100s",
              jali_version(), (r->chart.width_px - 2 * r->chart.margin_px) * pixel_mm,
-             (r->chart.height_px - 2 * r->chart.margin_px) * pixel_mm, printer->phi_e_mm, printer->phi_s_mm,
-             printer->phi_v_mm, set->make.place.frame_mm,
-             set->surface ? set->wall.thickness_mm : set->make.carve.thickness_mm,
+             (r->chart.height_px - 2 * r->chart.margin_px) * pixel_mm, set->make.printer.name,
+             *set->make.printer.name ? ", " : "", printer->phi_e_mm, printer->phi_s_mm, printer->phi_v_mm,
+             set->make.place.frame_mm, set->surface ? set->wall.thickness_mm : set->make.carve.thickness_mm,
              printer->paper ? ", the paper's method" : "", set->surface ? ", surface " : "",
              set->surface ? set->surface : "");
     return bytes_append(ctx, text, words, strlen(words) + 1);

@@ -30,6 +30,9 @@ typedef struct settings {
     bool no_structure;
     jali_read_options read;
     jali_options make;              // of all stages
+    const char *printer;            // name or file of a profile; NULL = none
+    double phi_given_mm[3];         // --phi-e, -s, -v as given; NaN: the printer's
+    const jali_material *material;  // as given; NULL: the printer's
     const char *surface;            // what to carve, as jali_surface_make takes it; NULL = a plate
     jali_shell_options wall;        // of a surface
     double thickness_mm;            // of plate or wall; 0 = as usual for either
@@ -78,6 +81,7 @@ typedef struct verb {
 const verb *verb_list(int32_t *count);
 
 jali_status run_sample(jali_context *ctx, const settings *set);
+jali_status list_printers(jali_context *ctx);
 jali_status run_list(jali_context *ctx, const settings *set);
 jali_status run_adapt(jali_context *ctx, const settings *set);
 jali_status run_carve(jali_context *ctx, const settings *set);
@@ -89,6 +93,15 @@ jali_status run_place(jali_context *ctx, const settings *set);
 /// Draw a mesh as the settings say, as a PNG; appended.
 jali_status render_png(jali_context *ctx, const jali_mesh *mesh, const jali_render_options *view,
                        int32_t size_px, jali_bytes *png);
+
+/// Where the user's own printers are: $XDG_CONFIG_HOME/jali/printers. Appended with an end mark; nothing when
+/// neither that nor a home is known.
+jali_status printers_folder(jali_context *ctx, jali_bytes *folder);
+
+/// Read set->printer, and fill in what follows: the three phi and the material, where none were given
+/// outright. A material's texts may lie in set->make.printer: copies of the settings must not outlive them.
+///   fails  as jali_printer_find
+jali_status settle_printer(jali_context *ctx, settings *set);
 
 /// The last part of a path, for people.
 const char *name_of(const char *path);

@@ -78,6 +78,23 @@ static json_t *promises_of(const made *m)
                      m->set[0].make.structure ? json_boolean(sound_of(m)) : json_null());
 }
 
+// Three figures for all, and which profile they are of, if of one.
+static json_t *printer_of(const settings *set)
+{
+    const jali_optimise_options *phi = &set->make.optimise;
+    const jali_printer *p = &set->make.printer;
+    json_t *printer = json_pack("{s:f, s:f, s:f}", "phi_e_mm", phi->phi_e_mm, "phi_s_mm", phi->phi_s_mm,
+                                "phi_v_mm", phi->phi_v_mm);
+    if (!*p->name) return printer;
+    json_t *own =
+        json_pack("{s:s, s:s, s:f, s:f, s:f, s:f}", "name", p->name, "process", jali_process_name(p->process),
+                  "phi_e_solid_mm", p->phi_e_solid_mm.value, "phi_e_void_mm", p->phi_e_void_mm.value,
+                  "hole_mm2", p->hole_mm2.value, "corner_mm", p->corner_mm.value);
+    if (own) json_object_update(own, printer);
+    json_decref(printer);
+    return own;
+}
+
 static json_t *vector_of(const double v[3])
 {
     return json_pack("[f, f, f]", v[0], v[1], v[2]);
@@ -107,22 +124,20 @@ static json_t *surface_of(const made *m)
 // gives NULL.
 static json_t *picture_of(const settings *set, const jali_picture *picture, const jali_result *r)
 {
-    const jali_optimise_options *printer = &set->make.optimise;
     double pixel_mm = jali_chart_pixel_mm(&r->chart);
     int32_t columns = r->chart.width_px - 2 * r->chart.margin_px,
             rows = r->chart.height_px - 2 * r->chart.margin_px;
     const int32_t *kernel = r->optimised.kernels_px;
     return json_pack(
-        "{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:{s:f, s:f, s:f}, s:{s:i, s:i, s:i},"
+        "{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:o, s:{s:i, s:i, s:i},"
         " s:{s:i, s:I, s:i}, s:o, s:o, s:o}",
         "input", "width_px", picture->width_px, "height_px", picture->height_px, "white_components",
         r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm, rows * pixel_mm, "grid_px",
         columns, rows, "pixel_mm", pixel_mm, "place", set->surface ? place_of(r) : json_null(), "printer",
-        "phi_e_mm", printer->phi_e_mm, "phi_s_mm", printer->phi_s_mm, "phi_v_mm", printer->phi_v_mm,
-        "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2], "connect", "bridges",
-        r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels, "pieces_dropped",
-        r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict", predict_of(set, r),
-        "structure", structure_of(set, &r->strength));
+        printer_of(set), "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2],
+        "connect", "bridges", r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels,
+        "pieces_dropped", r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict",
+        predict_of(set, r), "structure", structure_of(set, &r->strength));
 }
 
 // The first picture's figures stand at the top; a job lists all of them as "pictures" too.

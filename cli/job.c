@@ -109,7 +109,10 @@ static jali_status read_picture(jali_context *ctx, settings *set, job *j, json_t
     TRY(path_from_job(ctx, set, j, name, &one->operand));
     one->make.place.width_mm = one->make.place.height_mm = 0;
     TRY(set_all(ctx, j, object, own, OF_PICTURE, one));
+    if (one->printer != set->printer && jali_printer_is_file(one->printer))
+        TRY(path_from_job(ctx, set, j, one->printer, &one->printer));
     settle_options(one);
+    TRY(settle_printer(ctx, one));
     j->count++;
 done:
     return status;

@@ -32,7 +32,8 @@ static const verb verbs[] = {
     {"render", "MODEL", "draw a model, by day or with a lamp inside",
      GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_render},
     {"sample", "NAME", "draw one of the built-in pictures", GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_sample},
-    {"list", "KIND", "list what is built in: samples, surfaces, materials", GROUP_RUN, "", run_list},
+    {"list", "KIND", "list what is built in: samples, surfaces, materials, printers", GROUP_RUN, "",
+     run_list},
 };
 
 enum { VERB_COUNT = sizeof verbs / sizeof *verbs };

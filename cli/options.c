@@ -4,6 +4,7 @@
 // says which field of the settings an option fills.
 #include "values.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define FIELD(field) offsetof(settings, field)
@@ -35,12 +36,14 @@ static const option options[] = {
      "height of the picture; one size gives the other"},
     {"frame", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.frame_mm), 0, 1000, "mm",
      "width of the solid frame, 0 = none (2)"},
-    {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(make.optimise.phi_e_mm), 0, 100, "mm",
-     "how much wider a solid bar prints than drawn (0.1)"},
-    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(make.optimise.phi_s_mm), 0.001, 100, "mm",
-     "narrowest solid that prints (0.3)"},
-    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(make.optimise.phi_v_mm), 0.001, 100, "mm",
-     "narrowest void that prints (0.5)"},
+    {"printer", "NAME|FILE", TEXT, GROUP_SIZE, FIELD(printer), 0, 0, 0,
+     "what prints it: phi-e, phi-s, phi-v, material (\"jali list printers\"; a profile, a slicer's configuration)"},
+    {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[0]), 0, 100, "mm",
+     "how much wider a solid bar prints than drawn (the printer's; 0.1)"},
+    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[1]), 0.001, 100, "mm",
+     "narrowest solid that prints (the printer's; 0.3)"},
+    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[2]), 0.001, 100, "mm",
+     "narrowest void that prints (the printer's; 0.5)"},
     {"pixel", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.pixel_mm), 0.0001, 100, "mm",
      "working pixel (at least 8 a width, a whole number a phi-e / 2)"},
     {"paper", NULL, FLAG, GROUP_SIZE, FIELD(make.optimise.paper), 0, 0, 0,
@@ -101,7 +104,7 @@ static const option options[] = {
     {"support", "picture|rim|base", SUPPORT, GROUP_LOAD, 0, 0, 0, 0,
      "what is held: the picture's boundary, a plate's outline, what an object stands on (picture)"},
     {"material", "NAME", MATERIAL, GROUP_LOAD, 0, 0, 0, 0,
-     "what it is made of (\"jali list materials\"; pla)"},
+     "what it is made of (\"jali list materials\"; the printer's; pla)"},
     {"limit", "MPA", NUMBER, GROUP_LOAD, FIELD(limit_mpa), 1e-6, 1e6, "MPa",
      "the largest stress to allow (the material's)"},
     {"across", "N", WHOLE, GROUP_LOAD, FIELD(make.strengthen.across), 1, 16, 0,
@@ -157,6 +160,7 @@ settings default_settings(void)
         .context = jali_context_defaults(),
         .size_px = 1000,
         .view = jali_render_defaults(),
+        .phi_given_mm = {NAN, NAN, NAN},
     };
     set.make.place.width_mm = 0; // 70 stands unless a height is given
     return set;
@@ -231,7 +235,6 @@ void settle_options(settings *set)
     set->make.structure =
         !set->no_structure && (load->force_n != 0 || load->pressure_mpa != 0 || load->weight != 0 ||
                                load->push_n != 0 || load->pinch_n != 0);
-    if (set->limit_mpa > 0) set->make.strengthen.analyse.material.limit_mpa = set->limit_mpa;
     if (set->thickness_mm > 0) set->make.carve.thickness_mm = set->wall.thickness_mm = set->thickness_mm;
 }
 

@@ -14,13 +14,12 @@ typedef struct rgb {
 } rgb;
 
 static const rgb solid = {238, 234, 224}, hollow = {38, 40, 46}, bridge = {214, 69, 48};
-static const rgb lost_solid = {214, 69, 48}, lost_void = {46, 110, 200}, contested = {120, 200, 80};
+static const rgb contested = {120, 200, 80};
 static const rgb type_colour[JALI_TYPES] = {{230, 120, 30}, {240, 190, 40}, {150, 150, 160}};
 
 /// What the maps are made from, and the colour of one of their pixels.
 typedef struct map {
     const jali_result *result;
-    const jali_prediction *print;  // of an error map
     int32_t width, height, offset; // offset: of the map's first pixel in the working grid
     rgb (*colour)(const struct map *m, int32_t x, int32_t y);
 } map;
@@ -48,16 +47,6 @@ static rgb detail_colour(const map *m, int32_t x, int32_t y)
         if (jali_bitmap_get(&o->white.type[t], x, y) || jali_bitmap_get(&o->black.type[t], x, y))
             return type_colour[t];
     return jali_bitmap_get(&o->mask, x, y) ? solid : hollow;
-}
-
-// The print's grid is a whole number of times finer than the input.
-static rgb error_colour(const map *m, int32_t x, int32_t y)
-{
-    int32_t factor = m->width / m->result->input.width_px;
-    bool wanted = jali_bitmap_get(&m->result->input, x / factor, y / factor);
-    bool printed = jali_bitmap_get(&m->print->printed, x, y);
-    if (wanted == printed) return wanted ? solid : hollow;
-    return wanted ? lost_solid : lost_void;
 }
 
 static void shrink(const map *m, int32_t block, int32_t columns, int32_t rows, uint8_t *to)
@@ -153,13 +142,25 @@ done:
 
 #define KEY(class, words) "<span class=\"key " class "\"></span>" words " "
 
+static jali_status append_error_map(jali_context *ctx, const jali_result *r, const jali_prediction *print,
+                                    const char *title, jali_bytes *html)
+{
+    jali_status status;
+    jali_bytes png = {0};
+    TRY(jali_error_map(ctx, &r->input, &print->printed, MOST_MAP_PX, &png));
+    TRY(append_figure(ctx, &png, title,
+                      KEY("lost", "solid that is missing") KEY("closed", "solid that is too much"), html));
+done:
+    jali_bytes_free(ctx, &png);
+    return status;
+}
+
 static jali_status append_maps(jali_context *ctx, const settings *set, const jali_result *r, jali_bytes *html)
 {
     jali_status status;
     int32_t margin = r->chart.margin_px;
-    map input = {r, NULL, r->input.width_px, r->input.height_px, 0, input_colour};
-    map mask = {r,      NULL,       r->chart.width_px - 2 * margin, r->chart.height_px - 2 * margin,
-                margin, mask_colour};
+    map input = {r, r->input.width_px, r->input.height_px, 0, input_colour};
+    map mask = {r, r->chart.width_px - 2 * margin, r->chart.height_px - 2 * margin, margin, mask_colour};
     map detail = mask;
     detail.colour = detail_colour;
     TRY(append_map(ctx, &input, "The picture", "", html));
@@ -170,14 +171,8 @@ static jali_status append_maps(jali_context *ctx, const settings *set, const jal
                            KEY("x", "both tones want the place"),
                        html));
     if (set->make.predict) {
-        map error = {
-            r, &r->connected_print, r->connected_print.printed.width_px, r->connected_print.printed.height_px,
-            0, error_colour};
-        TRY(append_map(ctx, &error, "Printed when only connected",
-                       KEY("lost", "solid that is lost") KEY("closed", "voids that close"), html));
-        error.print = &r->result_print;
-        TRY(append_map(ctx, &error, "Printed as carved here",
-                       KEY("lost", "solid that is lost") KEY("closed", "voids that close"), html));
+        TRY(append_error_map(ctx, r, &r->connected_print, "Printed when only connected", html));
+        TRY(append_error_map(ctx, r, &r->result_print, "Printed as carved here", html));
     }
 done:
     return status;
@@ -208,7 +203,7 @@ static const char head[] =
     "table{border-collapse:collapse;margin:1rem 0}td,th{padding:.2rem 1rem .2rem 0;text-align:right}"
     "th:first-child,td:first-child{text-align:left}td,th{border-bottom:1px solid #ddd}"
     ".key{display:inline-block;width:.8em;height:.8em;margin:0 .3em 0 .6em}"
-    ".lost{background:#d64530}.closed{background:#2e6ec8}.a{background:#e6781e}.b{background:#f0be28}"
+    ".lost{background:#d64530}.closed{background:#facc28}.a{background:#e6781e}.b{background:#f0be28}"
     ".c{background:#9696a0}.x{background:#78c850}.no{color:#b02010;font-weight:bold}</style>";
 
 static jali_status append_promise(jali_context *ctx, const char *words, bool kept, jali_bytes *html)
@@ -243,11 +238,12 @@ static jali_status append_picture(jali_context *ctx, const settings *set, const 
     jali_status status;
     double pixel_mm = jali_chart_pixel_mm(&r->chart);
     TRY(bytes_print(ctx, html,
-                    "<p>%d x %d px in %d white pieces, %.4g x %.4g mm on a grid of %.4g mm; printer "
-                    "%g / %g / %g mm (growth, narrowest solid, narrowest void); %d bridges.</p>",
+                    "<p>%d x %d px in %d white pieces, %.4g x %.4g mm on a grid of %.4g mm; printer ",
                     picture->width_px, picture->height_px, r->input_pieces,
                     (r->chart.width_px - 2 * r->chart.margin_px) * pixel_mm,
-                    (r->chart.height_px - 2 * r->chart.margin_px) * pixel_mm, pixel_mm,
+                    (r->chart.height_px - 2 * r->chart.margin_px) * pixel_mm, pixel_mm));
+    TRY(append_escaped(ctx, set->make.printer.name, html));
+    TRY(bytes_print(ctx, html, " %g / %g / %g mm (growth, narrowest solid, narrowest void); %d bridges.</p>",
                     set->make.optimise.phi_e_mm, set->make.optimise.phi_s_mm, set->make.optimise.phi_v_mm,
                     r->optimised.bridges));
     if (set->surface)

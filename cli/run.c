@@ -90,7 +90,8 @@ exit_code run_verb(const verb *v, settings *set, const char *refusal)
     }
     running = ctx;
     catch_signals();
-    jali_status status = refusal ? fail(ctx, JALI_BAD_VALUE, "%s", refusal) : v->run(ctx, set);
+    jali_status status = refusal ? fail(ctx, JALI_BAD_VALUE, "%s", refusal) : settle_printer(ctx, set);
+    if (status == JALI_OK) status = v->run(ctx, set);
     status = solver_agree(ctx, status);
     running = NULL;
     clear_line(&line);

@@ -30,9 +30,12 @@ jali_status run_list(jali_context *ctx, const settings *set)
             printf("%-10s E %6g MPa, nu %.2f, %5.2f g/cm3, limit %5g MPa: %s\n", material[i].name,
                    material[i].e_mpa, material[i].nu, material[i].density_g_cm3, material[i].limit_mpa,
                    material[i].source);
+    } else if (strcmp(set->operand, "printers") == 0) {
+        return list_printers(ctx);
     } else {
         return fail(ctx, JALI_BAD_VALUE,
-                    "there is no list of \"%.40s\"; there are samples, surfaces and materials", set->operand);
+                    "there is no list of \"%.40s\"; there are samples, surfaces, materials and printers",
+                    set->operand);
     }
     return JALI_OK;
 }

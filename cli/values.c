@@ -176,7 +176,7 @@ static bool parse_material(const char *text, settings *set, char *sentence)
     const jali_material *list = jali_material_list(&count), *found = jali_material_find(text);
     char names[200] = "";
     if (found) {
-        set->make.strengthen.analyse.material = *found;
+        set->material = found;
         return true;
     }
     for (int32_t i = 0; i < count; i++)

@@ -10,6 +10,7 @@ if(TARGET jali_mpi)
   install(TARGETS jali_mpi RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/jali)
 endif()
 install(DIRECTORY include/jali DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES printers/schema/printer.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/jali)
 install(EXPORT jali-targets NAMESPACE jali:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jali)
 configure_package_config_file(cmake/jali-config.cmake.in ${PROJECT_BINARY_DIR}/jali-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/jali)

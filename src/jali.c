@@ -60,6 +60,11 @@ static double now_seconds(void)
 static jali_options agreed(const jali_options *given)
 {
     jali_options opt = given ? *given : jali_defaults();
+    if (*opt.printer.name) {
+        opt.optimise.phi_e_mm = jali_printer_phi_e_mm(&opt.printer);
+        opt.optimise.phi_s_mm = opt.printer.phi_s_mm.value;
+        opt.optimise.phi_v_mm = opt.printer.phi_v_mm.value;
+    }
     opt.place.phi_e_mm = opt.optimise.phi_e_mm;
     opt.place.phi_s_mm = opt.optimise.phi_s_mm;
     opt.place.phi_v_mm = opt.optimise.phi_v_mm;

@@ -112,7 +112,7 @@ TEST(usage_is_checked_before_anything_is_done)
     run("sample girih -o a.png --size 5", 2, "16 .. 32768 px");
     run("sample girih -o a.png --quiet=3", 2, "takes no value");
     run("sample lion -o a.png", 2, "there are girih");
-    run("list socks", 2, "samples, surfaces and materials");
+    run("list socks", 2, "samples, surfaces, materials and printers");
     CHECK(access("a.png", F_OK) != 0);
 }
 
@@ -133,6 +133,43 @@ TEST(numbers_are_numbers_in_their_range)
     run("place two.pbm -o a.png --crop 0,0,4", 2, "left,top,width,height");
     run("place two.pbm -o a.png --rotate 45", 2, "0, 90, 180 or 270");
     CHECK(access("a.png", F_OK) != 0);
+}
+
+// A profile sets the three figures; what is given outright counts, wherever it stands.
+TEST(a_printer_sets_what_no_option_does)
+{
+    char words[200], json[TEXT_BYTES];
+    setenv("XDG_CONFIG_HOME", folder, 1);
+    run("list printers", 0, "");
+    CHECK(strstr(printed, "hori-z500") && strstr(printed, "laser-acrylic") &&
+          !strstr(printed, "cannot be read"));
+    run("adapt two.pbm -o a.png --printer form1", 2, "did you mean form1+?");
+    run("adapt two.pbm -o a.png --printer none.json", 1, "none.json");
+    write_text("bad.json", "{\"jali_printer\": 1, \"phi_s_mm\": \"thin\"}", 39);
+    run("adapt two.pbm -o a.png --printer bad.json", 4, "\"phi_s_mm\" takes a number");
+    CHECK(access("a.png", F_OK) != 0);
+    const char *own = "{\"jali_printer\": 1, \"inherits\": \"lite600\", \"phi_e_void_mm\": 0.3}";
+    CHECK(mkdir("jali", 0700) == 0 && mkdir("jali/printers", 0700) == 0);
+    write_text("jali/printers/mine.json", own, strlen(own));
+    write_text("jali/printers/broken.json", "{}", 2);
+    run("list printers", 0, "");
+    CHECK(strstr(printed, "mine             sla     phi   0.2 / 0.25 / 0.45"));
+    CHECK(strstr(printed, "broken.json      cannot be read"));
+    for (int32_t order = 0; order < 2; order++) {
+        snprintf(words, sizeof words,
+                 "adapt two.pbm -o a.png --force-overwrite --json f.json %s --phi-v 0.6 %s",
+                 order ? "" : "--printer mine", order ? "--printer mine" : "");
+        run(words, 0, "");
+        read_text("f.json", json);
+        CHECK(strstr(json, "\"name\": \"mine\"") && strstr(json, "\"process\": \"sla\""));
+        CHECK(strstr(json, "\"phi_e_mm\": 0.2") && strstr(json, "\"phi_s_mm\": 0.25"));
+        CHECK(strstr(json, "\"phi_v_mm\": 0.6") && strstr(json, "\"phi_e_void_mm\": 0.3"));
+    }
+    unlink("a.png");
+    run("analyse two.pbm --force 1 --printer mine --json - --width 70", 0, "");
+    CHECK(strstr(printed, "\"name\": \"resin\""));
+    run("analyse two.pbm --force 1 --material steel --printer mine --json - --width 70", 0, "");
+    CHECK(strstr(printed, "\"name\": \"steel\""));
 }
 
 TEST(bad_pictures_are_rejected)
@@ -499,6 +536,7 @@ int main(void)
         cmocka_unit_test(help_version_and_lists_go_to_stdout),
         cmocka_unit_test(usage_is_checked_before_anything_is_done),
         cmocka_unit_test(numbers_are_numbers_in_their_range),
+        cmocka_unit_test(a_printer_sets_what_no_option_does),
         cmocka_unit_test(bad_pictures_are_rejected),
         cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),
         cmocka_unit_test(pictures_are_carved_through_a_surface),

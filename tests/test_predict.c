@@ -7,6 +7,7 @@
 #include "base/base.h"
 
 #include <math.h>
+#include <png.h>
 
 // One picture pixel is 0.1 mm; phi_s 0.4, phi_v 0.6, phi_e 0.2 mm: 4, 6 and 1 a side, 16, 24 and 4 on the
 // fine grid.
@@ -281,11 +282,69 @@ TEST(specks_between_the_discs_of_a_void_are_no_pieces)
     jali_bitmap_free(ctx, &mask);
 }
 
+// The reader's own: what a PNG of 8-bit colours holds, by way of libpng's simple interface.
+static void colours_of(const jali_bytes *png, int32_t width, int32_t height, uint8_t *rgb)
+{
+    png_image image = {.version = PNG_IMAGE_VERSION};
+    CHECK(png_image_begin_read_from_memory(&image, png->data, png->size));
+    CHECK_INT(image.width, width);
+    CHECK_INT(image.height, height);
+    image.format = PNG_FORMAT_RGB;
+    CHECK(png_image_finish_read(&image, NULL, rgb, 0, NULL));
+}
+
+TEST(missing_is_red_and_excess_is_yellow)
+{
+    jali_bitmap wanted = drawn_rows(2, "#."
+                                       "#.");
+    jali_bitmap printed = drawn_rows(4, "####"
+                                        "##.."
+                                        ".#.."
+                                        "##..");
+    uint8_t rgb[4 * 4 * 3];
+    jali_bytes png = {0};
+    CHECK_OK(jali_error_map(ctx, &wanted, &printed, 4, &png));
+    colours_of(&png, 4, 4, rgb);
+    const uint8_t *light = &rgb[0], *yellow = &rgb[3 * 2], *red = &rgb[3 * 8], *dark = &rgb[3 * 15];
+    CHECK(light[0] > 200 && light[1] > 200 && light[2] > 200 && dark[0] < 60 && dark[1] < 60 && dark[2] < 60);
+    CHECK(red[0] > 200 && red[1] < 60 && red[2] < 60);
+    CHECK(yellow[0] > 200 && yellow[1] > 180 && yellow[2] < 60);
+    for (int32_t i = 0; i < 16; i++)
+        CHECK(memcmp(&rgb[3 * i],
+                     i == 2 || i == 3 ? yellow
+                     : i == 8         ? red
+                     : i % 4 < 2      ? light
+                                      : dark,
+                     3) == 0);
+    png.size = 0;
+    uint8_t small[2 * 2 * 3];
+    CHECK_OK(jali_error_map(ctx, &wanted, &printed, 3, &png)); // blocks of 2: their means
+    colours_of(&png, 2, 2, small);
+    for (int32_t k = 0; k < 3; k++) {
+        CHECK_INT(small[3 + k], (2 * yellow[k] + 2 * dark[k]) / 4);
+        CHECK_INT(small[6 + k], (3 * light[k] + red[k]) / 4);
+    }
+    CHECK_STATUS(jali_error_map(ctx, &wanted, &printed, 0, &png), JALI_BAD_VALUE);
+    CHECK_STATUS(jali_error_map(ctx, &(jali_bitmap){0}, &printed, 9, &png), JALI_BAD_VALUE);
+    jali_bytes_free(ctx, &png);
+    jali_bitmap_free(ctx, &wanted);
+    jali_bitmap_free(ctx, &printed);
+}
+
+static jali_status draw_map(jali_context *limited, void *data)
+{
+    jali_bytes png = {0};
+    jali_status status = jali_error_map(limited, data, data, 10, &png);
+    jali_bytes_free(limited, &png);
+    return status;
+}
+
 TEST(every_allocation_refused_once)
 {
     uint64_t seed = 3;
     jali_bitmap a = random_bitmap(&seed, 20, 20, 60);
     refuse_each_allocation(predict_some, &a);
+    refuse_each_allocation(draw_map, &a);
     jali_bitmap_free(ctx, &a);
 }
 
@@ -332,6 +391,7 @@ int main(void)
         cmocka_unit_test(the_error_rate_is_what_is_counted_by_hand),
         cmocka_unit_test(recall_is_the_share_of_the_axis_that_prints),
         cmocka_unit_test(specks_between_the_discs_of_a_void_are_no_pieces),
+        cmocka_unit_test(missing_is_red_and_excess_is_yellow),
         cmocka_unit_test(every_allocation_refused_once),
         cmocka_unit_test(threads_do_not_change_a_prediction),
         cmocka_unit_test(bad_values_are_a_sentence),

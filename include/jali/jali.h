@@ -62,7 +62,8 @@ JALI_API const char *jali_stage_name(int32_t stage);
 
 typedef struct jali_options {
     jali_threshold_options threshold;
-    jali_place_options place;       // size, working pixel, frame
+    jali_place_options place; // size, working pixel, frame
+    jali_printer printer;     // when it has a name, its figures are those of the whole run. Default: none
     jali_optimise_options optimise; // its phi_e, phi_s, phi_v and paper count for place and predict as well
     jali_trace_options trace;
     jali_carve_options carve;

@@ -3,6 +3,7 @@
 #define JALI_PREDICT_H
 
 #include <jali/bitmap.h>
+#include <jali/bytes.h>
 #include <jali/chart.h>
 
 #ifdef __cplusplus
@@ -51,6 +52,16 @@ JALI_API jali_status jali_predict(jali_context *ctx, const jali_reference *refer
                                   int32_t margin_px, bool outside_solid, const jali_predict_options *opt,
                                   jali_prediction *prediction);
 JALI_API void jali_prediction_free(jali_context *ctx, jali_prediction *prediction);
+
+/// Draw how a print differs from the picture, as a PNG: solid light, void dark; red where solid is missing,
+/// yellow where there is too much.
+///   in     wanted    the picture, on any grid that covers the same area as the print's
+///          printed   a prediction's, or one that was measured
+///          most_px   of the map's longer side, >= 1; a larger print is shrunk by the mean of whole blocks
+///   out    png       appended
+///   fails  JALI_BAD_VALUE, JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+JALI_API jali_status jali_error_map(jali_context *ctx, const jali_bitmap *wanted, const jali_bitmap *printed,
+                                    int32_t most_px, jali_bytes *png);
 
 #ifdef __cplusplus
 }

@@ -62,7 +62,11 @@ JALI_API bool jali_printer_material(const jali_printer *printer, jali_material *
 /// Names of the profiles that are built in, in alphabetical order.
 JALI_API const char *const *jali_printer_names(int32_t *count);
 
-/// Find a profile: a file where `name` has a slash or ends in .json or .ini, else NAME.json in the user's
+/// Does jali_printer_find take this for a file's name? So it does when it has a slash or ends in .json or
+/// .ini.
+JALI_API bool jali_printer_is_file(const char *name);
+
+/// Find a profile: a file (jali_printer_is_file), else NAME.json in the user's
 /// folder, else one that is built in.
 ///   in     folder    of the user's own profiles; NULL or one that is not there: none
 ///   fails  JALI_BAD_VALUE (no such name; the nearest one is named), and as jali_printer_read

@@ -34,7 +34,7 @@ static bool ends_in(const char *text, const char *end)
     return strlen(text) >= strlen(end) && strcmp(text + strlen(text) - strlen(end), end) == 0;
 }
 
-static bool names_a_file(const char *name)
+bool jali_printer_is_file(const char *name)
 {
     return strchr(name, '/') || ends_in(name, ".json") || ends_in(name, ".ini");
 }
@@ -87,7 +87,7 @@ static jali_status open_profile(jali_context *ctx, const char *name, const char 
 {
     jali_status status;
     const char *slash = beside ? strrchr(beside, '/') : NULL;
-    if (!names_a_file(name)) return open_name(ctx, name, folder, f);
+    if (!jali_printer_is_file(name)) return open_name(ctx, name, folder, f);
     TRY(slash && *name != '/' ? bytes_print(ctx, &f->name, "%.*s/%s", (int)(slash - beside), beside, name)
                               : bytes_print(ctx, &f->name, "%s", name));
     TRY(bytes_append(ctx, &f->name, "", 1));

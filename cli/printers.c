@@ -1,0 +1,115 @@
+// The user's printer: --printer, what it means for the other options, and jali list printers.
+#include "cli.h"
+#include "base/bytes.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+jali_status printers_folder(jali_context *ctx, jali_bytes *folder)
+{
+    jali_status status = JALI_OK;
+    const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
+    if (config && *config == '/') // the specification ignores paths that are not absolute
+        TRY(bytes_print(ctx, folder, "%s/jali/printers", config));
+    else if (home && *home)
+        TRY(bytes_print(ctx, folder, "%s/.config/jali/printers", home));
+    if (folder->size > 0) TRY(bytes_append(ctx, folder, "", 1));
+done:
+    return status;
+}
+
+// What the options say outright takes the profile's place.
+static void give_figure(double given, const char *option, jali_figure *figure)
+{
+    if (isnan(given)) return;
+    memset(figure, 0, sizeof *figure);
+    figure->value = given;
+    snprintf(figure->source, sizeof figure->source, "%s", option);
+}
+
+jali_status settle_printer(jali_context *ctx, settings *set)
+{
+    jali_status status = JALI_OK;
+    jali_bytes folder = {0};
+    jali_printer *p = &set->make.printer;
+    jali_optimise_options *optimise = &set->make.optimise;
+    double *const phi_mm[3] = {&optimise->phi_e_mm, &optimise->phi_s_mm, &optimise->phi_v_mm};
+    jali_material *material = &set->make.strengthen.analyse.material, of_printer;
+    if (set->printer) {
+        TRY(printers_folder(ctx, &folder));
+        TRY(jali_printer_find(ctx, set->printer, (const char *)folder.data, p));
+        give_figure(set->phi_given_mm[0], "--phi-e", &p->phi_e_solid_mm);
+        give_figure(set->phi_given_mm[0], "--phi-e", &p->phi_e_void_mm);
+        give_figure(set->phi_given_mm[1], "--phi-s", &p->phi_s_mm);
+        give_figure(set->phi_given_mm[2], "--phi-v", &p->phi_v_mm);
+        *phi_mm[0] = jali_printer_phi_e_mm(p);
+        *phi_mm[1] = p->phi_s_mm.value;
+        *phi_mm[2] = p->phi_v_mm.value;
+        if (jali_printer_material(p, &of_printer)) *material = of_printer;
+    }
+    for (int32_t i = 0; i < 3; i++)
+        if (!isnan(set->phi_given_mm[i])) *phi_mm[i] = set->phi_given_mm[i];
+    if (set->material) *material = *set->material;
+    if (set->limit_mpa > 0) material->limit_mpa = set->limit_mpa;
+done:
+    jali_bytes_free(ctx, &folder);
+    return status;
+}
+
+// --- jali list printers
+
+static void print_printer(const jali_printer *p)
+{
+    printf("%-16s %-7s phi %5.3g / %4.3g / %4.3g mm  %s\n", p->name, jali_process_name(p->process),
+           jali_printer_phi_e_mm(p), p->phi_s_mm.value, p->phi_v_mm.value, p->what);
+}
+
+static int is_profile(const struct dirent *entry)
+{
+    const char *dot = strrchr(entry->d_name, '.');
+    return entry->d_name[0] != '.' && dot && strcmp(dot, ".json") == 0;
+}
+
+// The user's own, by name; one that cannot be read says why.
+static jali_status list_own(jali_context *ctx, const char *folder)
+{
+    jali_status status = JALI_OK;
+    struct dirent **entry = NULL;
+    int count = scandir(folder, &entry, is_profile, alphasort);
+    if (count > 0) printf("\nin %s:\n", folder);
+    for (int i = 0; i < count; i++) {
+        jali_printer p;
+        jali_bytes path = {0};
+        if (status == JALI_OK) status = bytes_print(ctx, &path, "%s/%s%c", folder, entry[i]->d_name, 0);
+        if (status == JALI_OK) {
+            if (jali_printer_find(ctx, (const char *)path.data, folder, &p) == JALI_OK)
+                print_printer(&p);
+            else
+                printf("%-16s cannot be read: %s\n", entry[i]->d_name, jali_message(ctx));
+        }
+        jali_bytes_free(ctx, &path);
+        free(entry[i]);
+    }
+    free(entry);
+    return status;
+}
+
+jali_status list_printers(jali_context *ctx)
+{
+    jali_status status = JALI_OK;
+    jali_bytes folder = {0};
+    int32_t count;
+    const char *const *name = jali_printer_names(&count);
+    for (int32_t i = 0; i < count; i++) {
+        jali_printer p;
+        TRY(jali_printer_find(ctx, name[i], NULL, &p));
+        print_printer(&p);
+    }
+    TRY(printers_folder(ctx, &folder));
+    if (folder.size > 0) TRY(list_own(ctx, (const char *)folder.data));
+done:
+    jali_bytes_free(ctx, &folder);
+    return status;
+}
