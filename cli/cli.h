@@ -39,6 +39,7 @@ typedef struct settings {
     const char *job;                // file with the pictures of one surface
     int32_t size_px;                // of a sample or a render
     jali_render_options view;       // of a render
+    jali_board_options board;
     bool skip_intersections, walls; // of check
     jali_context_options context;
     double max_memory_mb;
@@ -67,6 +68,7 @@ typedef enum option_group {
     GROUP_LOAD = 65536,  // what the object bears, its maps
     GROUP_REINFORCE = 131072,
     GROUP_SOLVER = 262144,
+    GROUP_BOARD = 524288,
 } option_group;
 
 typedef struct verb {
@@ -88,6 +90,7 @@ jali_status run_carve(jali_context *ctx, const settings *set);
 jali_status run_analyse(jali_context *ctx, const settings *set);
 jali_status run_check(jali_context *ctx, const settings *set);
 jali_status run_render(jali_context *ctx, const settings *set);
+jali_status run_board(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 
 /// Draw a mesh as the settings say, as a PNG; appended.

@@ -32,6 +32,8 @@ static const verb verbs[] = {
     {"render", "MODEL", "draw a model, by day or with a lamp inside",
      GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_render},
     {"sample", "NAME", "draw one of the built-in pictures", GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_sample},
+    {"board", NULL, "the reference board, from which a printer's figures are measured",
+     GROUP_BOARD | GROUP_RENDER | GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".3mf.stl.svg.dxf.png", run_board},
     {"list", "KIND", "list what is built in: samples, surfaces, materials, printers", GROUP_RUN, "",
      run_list},
 };

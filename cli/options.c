@@ -36,16 +36,16 @@ static const option options[] = {
      "height of the picture; one size gives the other"},
     {"frame", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.frame_mm), 0, 1000, "mm",
      "width of the solid frame, 0 = none (2)"},
-    {"printer", "NAME|FILE", TEXT, GROUP_SIZE, FIELD(printer), 0, 0, 0,
+    {"printer", "NAME|FILE", TEXT, GROUP_SIZE | GROUP_BOARD, FIELD(printer), 0, 0, 0,
      "what prints it: phi-e, phi-s, phi-v, material (\"jali list printers\"; a profile, a slicer's configuration)"},
     {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[0]), 0, 100, "mm",
      "how much wider a solid bar prints than drawn (the printer's; 0.1)"},
-    {"phi-s", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[1]), 0.001, 100, "mm",
+    {"phi-s", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD, FIELD(phi_given_mm[1]), 0.001, 100, "mm",
      "narrowest solid that prints (the printer's; 0.3)"},
-    {"phi-v", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[2]), 0.001, 100, "mm",
+    {"phi-v", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD, FIELD(phi_given_mm[2]), 0.001, 100, "mm",
      "narrowest void that prints (the printer's; 0.5)"},
-    {"pixel", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.pixel_mm), 0.0001, 100, "mm",
-     "working pixel (at least 8 a width, a whole number a phi-e / 2)"},
+    {"pixel", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD, FIELD(make.place.pixel_mm), 0.0001, 100, "mm",
+     "working pixel (at least 8 a width, a whole number a phi-e / 2); of a board 0.05"},
     {"paper", NULL, FLAG, GROUP_SIZE, FIELD(make.optimise.paper), 0, 0, 0,
      "the paper's own method: input pixels, square elements, its roundings"},
 
@@ -58,8 +58,8 @@ static const option options[] = {
     {"no-predict", NULL, FLAG_OFF, GROUP_METHOD, FIELD(make.predict), 0, 0, 0,
      "do not say what the printer makes of it"},
 
-    {"thickness", "MM", NUMBER, GROUP_PLATE, FIELD(thickness_mm), 0.01, 1000, "mm",
-     "thickness of the plate (4), or of a surface's wall (2)"},
+    {"thickness", "MM", NUMBER, GROUP_PLATE | GROUP_BOARD, FIELD(thickness_mm), 0.01, 1000, "mm",
+     "thickness of the plate (4), of a surface's wall or the board (2)"},
     {"corner", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.corner_radius_mm), 0, 1000, "mm",
      "radius of the plate's corners (0)"},
     {"hole", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.hole_diameter_mm), 0, 100, "mm",
@@ -126,6 +126,9 @@ static const option options[] = {
     {"job", "FILE", TEXT, GROUP_JOB, FIELD(job), 0, 0, 0,
      "several pictures on one surface, as JSON, in place of PICTURE (docs/job.md)"},
 
+    {"within", "MM", NUMBER, GROUP_BOARD, FIELD(board.most_mm), 40, 200, "mm",
+     "the longest side the board may have (200)"},
+
     {"render", "FILE", TEXT, GROUP_RENDER, FIELD(render), 0, 0, 0, "draw the object as a PNG"},
     {"lamp", NULL, FLAG, GROUP_VIEW, FIELD(view.lamp), 0, 0, 0, "draw it at night, with a lamp inside"},
     {"view", "X,Y,Z", VECTOR, GROUP_VIEW, FIELD(view.view), 0, 0, 0,
@@ -161,6 +164,7 @@ settings default_settings(void)
         .size_px = 1000,
         .view = jali_render_defaults(),
         .phi_given_mm = {NAN, NAN, NAN},
+        .board = jali_board_defaults(),
     };
     set.make.place.width_mm = 0; // 70 stands unless a height is given
     return set;

@@ -15,6 +15,7 @@
 #include <jali/analyse.h>
 #include <jali/base.h>
 #include <jali/bitmap.h>
+#include <jali/board.h>
 #include <jali/bridges.h>
 #include <jali/bytes.h>
 #include <jali/carve.h>
