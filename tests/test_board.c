@@ -181,12 +181,17 @@ TEST(impossible_boards_are_refused_with_figures)
 {
     jali_board board;
     jali_board_options opt = jali_board_defaults();
-    opt.phi_s_mm = 2;
+    opt.phi_s_mm = 4;
     CHECK_STATUS(jali_board_layout(ctx, &opt, &board), JALI_BAD_VALUE);
-    CHECK(strstr(jali_message(ctx), "0.05 to 1.5 mm"));
+    CHECK(strstr(jali_message(ctx), "0.05 to 3 mm"));
     opt.phi_s_mm = opt.phi_v_mm = 1.5;
+    opt.most_mm = 100;
     CHECK_STATUS(jali_board_layout(ctx, &opt, &board), JALI_NO_RESULT);
-    CHECK(strstr(jali_message(ctx), "needs 1"));
+    CHECK(strstr(jali_message(ctx), "needs ") && strstr(jali_message(ctx), "100 mm is the longest"));
+    opt.most_mm = 200; // made for less, its widths reach beyond
+    CHECK_OK(jali_board_layout(ctx, &opt, &board));
+    CHECK(board.phi_s_mm < 1.5 && board.phi_s_mm > 0.9 && MAX(board.width_mm, board.height_mm) <= 200);
+    jali_board_free(ctx, &board);
     opt = jali_board_defaults();
     opt.phi_v_mm = NAN;
     CHECK_STATUS(jali_board_layout(ctx, &opt, &board), JALI_BAD_VALUE);

@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 typedef struct jali_board_options {
-    double phi_s_mm;     // narrowest solid expected to print, 0.05 .. 1.5; 0.3 (default); rounded to 0.01
+    double phi_s_mm;     // narrowest solid expected to print, 0.05 .. 3; 0.3 (default); rounded to 0.01
     double phi_v_mm;     // narrowest void, likewise; 0.5 (default)
     double most_mm;      // the longest side may be so long; 200 (default), 40 .. 200
     double thickness_mm; // 2 (default), > 0
@@ -84,8 +84,10 @@ JALI_API void jali_board_free(jali_context *ctx, jali_board *board);
 
 /// Lay out a board: widths from less than half to three times those expected, in steps of a tenth near them.
 ///   in     opt    NULL means the defaults
-///   out    board  the same for the same options; free with jali_board_free
-///   fails  JALI_BAD_VALUE, JALI_NO_RESULT (it does not fit into most_mm: how much is needed), JALI_NO_MEMORY
+///   out    board  the same for the same options; free with jali_board_free. When a board for these widths
+///                is too large for most_mm, the coarser of both widths is brought down, to half at most; the
+///                steps above it still reach what was asked for
+///   fails  JALI_BAD_VALUE, JALI_NO_RESULT (even so it does not fit: how much is needed), JALI_NO_MEMORY
 JALI_API jali_status jali_board_layout(jali_context *ctx, const jali_board_options *opt, jali_board *board);
 
 /// Where marks and code lie, as shares of the rectangle through the centres of the four corner marks: from

@@ -273,8 +273,8 @@ static jali_status check_options(jali_context *ctx, const jali_board_options *op
         const char *name;
         double value, least, most;
     } range[] = {
-        {"phi_s", opt->phi_s_mm, LEAST_PHI * GRID_MM, MOST_PHI * GRID_MM},
-        {"phi_v", opt->phi_v_mm, LEAST_PHI * GRID_MM, MOST_PHI * GRID_MM},
+        {"phi_s", opt->phi_s_mm, LEAST_PHI * GRID_MM, 2 * MOST_PHI * GRID_MM},
+        {"phi_v", opt->phi_v_mm, LEAST_PHI * GRID_MM, 2 * MOST_PHI * GRID_MM},
         {"longest side", opt->most_mm, 40, 200},
         {"thickness", opt->thickness_mm, 0.01, 100},
     };
@@ -285,28 +285,38 @@ static jali_status check_options(jali_context *ctx, const jali_board_options *op
     return JALI_OK;
 }
 
+// The roomiest board of these widths that fits: fewer columns before narrower cells would crowd them.
+static bool fit(board_figures *f, double most_mm, jali_board *tried)
+{
+    group g[GROUPS];
+    for (f->columns = MOST_COLUMNS; f->columns >= FEWEST_COLUMNS; f->columns--)
+        for (f->cell_step = 0; f->cell_step < CELL_STEPS; f->cell_step++) {
+            size_board(f, tried, g);
+            if (MAX(tried->width_mm, tried->height_mm) <= most_mm) return true;
+        }
+    return false;
+}
+
 jali_status jali_board_layout(jali_context *ctx, const jali_board_options *given, jali_board *board)
 {
     jali_status status;
     jali_board_options opt = given ? *given : jali_board_defaults();
-    group g[GROUPS];
     jali_board tried = {0};
     *board = (jali_board){0};
     TRY(check_options(ctx, &opt));
-    board_figures f = {.phi_s = (int32_t)lround(opt.phi_s_mm / GRID_MM),
-                       .phi_v = (int32_t)lround(opt.phi_v_mm / GRID_MM)};
-    for (f.columns = MOST_COLUMNS; f.columns >= FEWEST_COLUMNS; f.columns--)
-        for (f.cell_step = 0; f.cell_step < CELL_STEPS; f.cell_step++) {
-            size_board(&f, &tried, g);
-            if (MAX(tried.width_mm, tried.height_mm) > opt.most_mm) continue;
-            TRY(lay_out(ctx, &f, board));
-            board->thickness_mm = opt.thickness_mm;
-            goto done;
-        }
-    status =
-        fail(ctx, JALI_NO_RESULT,
-             "a board for phi_s %g and phi_v %g mm needs %.0f x %.0f mm; %g mm is the longest side allowed",
-             opt.phi_s_mm, opt.phi_v_mm, ceil(tried.width_mm), ceil(tried.height_mm), opt.most_mm);
+    const int32_t phi_s = (int32_t)lround(opt.phi_s_mm / GRID_MM),
+                  phi_v = (int32_t)lround(opt.phi_v_mm / GRID_MM);
+    board_figures f = {MIN(phi_s, MOST_PHI), MIN(phi_v, MOST_PHI), 0, 0};
+    while (!fit(&f, opt.most_mm, &tried)) { // the coarser width is brought down: its steps reach far above it
+        int32_t *coarser = f.phi_s > f.phi_v ? &f.phi_s : &f.phi_v;
+        if (--*coarser < MAX(LEAST_PHI, (f.phi_s > f.phi_v ? phi_s : phi_v) / 2))
+            TRY(fail(ctx, JALI_NO_RESULT,
+                     "a board for phi_s %g and phi_v %g mm needs %.0f x %.0f mm; %g mm is the longest side "
+                     "allowed",
+                     opt.phi_s_mm, opt.phi_v_mm, ceil(tried.width_mm), ceil(tried.height_mm), opt.most_mm));
+    }
+    TRY(lay_out(ctx, &f, board));
+    board->thickness_mm = opt.thickness_mm;
 done:
     return status;
 }
