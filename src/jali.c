@@ -124,11 +124,14 @@ static jali_status predict(jali_context *ctx, const jali_options *opt, jali_resu
     bool outside = r->chart.outside_solid;
     jali_reference reference = {0};
     jali_bitmap plain = {0};
-    jali_predict_options p = {.phi_e_mm = opt->optimise.phi_e_mm,
-                              .phi_s_mm = opt->optimise.phi_s_mm,
-                              .phi_v_mm = opt->optimise.phi_v_mm,
-                              .chart = &r->chart,
-                              .recall = opt->recall};
+    jali_predict_options p = jali_predict_of(&opt->printer);
+    if (!*opt->printer.name) {
+        p.phi_e_solid_mm = p.phi_e_void_mm = opt->optimise.phi_e_mm;
+        p.phi_s_mm = opt->optimise.phi_s_mm;
+        p.phi_v_mm = opt->optimise.phi_v_mm;
+    }
+    p.chart = &r->chart;
+    p.recall = opt->recall;
     p.picture_mm = jali_chart_pixel_mm(&r->chart) * (r->chart.width_px - 2 * r->chart.margin_px);
     TRY(step(ctx, "predict", 0));
     TRY(jali_reference_create(ctx, &r->input, &p, &reference));

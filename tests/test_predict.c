@@ -13,8 +13,12 @@
 // fine grid.
 static jali_predict_options options(int32_t width_px)
 {
-    return (jali_predict_options){
-        .picture_mm = 0.1 * width_px, .phi_e_mm = 0.2, .phi_s_mm = 0.4, .phi_v_mm = 0.6, .recall = true};
+    return (jali_predict_options){.picture_mm = 0.1 * width_px,
+                                  .phi_e_solid_mm = 0.2,
+                                  .phi_e_void_mm = 0.2,
+                                  .phi_s_mm = 0.4,
+                                  .phi_v_mm = 0.6,
+                                  .recall = true};
 }
 
 enum { SIDE_PX = 60, MASK_SCALE = 8, MARGIN_PX = 40 };
@@ -108,8 +112,12 @@ TEST(phi_is_a_whole_number_of_pixels_where_floating_point_misses_it_by_a_hair)
 {
     // 0.3 mm over a fine pixel of 7 mm / 280 is 11.999999999999998: still 12 px, so that a bar of 11 px does
     // not print.
-    jali_predict_options opt = {
-        .picture_mm = 7, .phi_e_mm = 0, .phi_s_mm = 0.3, .phi_v_mm = 0.3, .recall = false};
+    jali_predict_options opt = {.picture_mm = 7,
+                                .phi_e_solid_mm = 0,
+                                .phi_e_void_mm = 0,
+                                .phi_s_mm = 0.3,
+                                .phi_v_mm = 0.3,
+                                .recall = false};
     jali_bitmap picture;
     jali_reference reference;
     CHECK_OK(jali_bitmap_create(ctx, 70, 30, &picture));
@@ -135,8 +143,12 @@ TEST(pictures_of_few_pixels_are_split_until_a_bar_of_phi_s_prints_wherever_it_li
 {
     enum { PICTURE_PX = 12, MASK_PX = 160 };
     for (double phi_mm = 0.5; phi_mm < 4; phi_mm *= 2) {
-        jali_predict_options opt = {
-            .picture_mm = 8, .phi_e_mm = 0, .phi_s_mm = phi_mm, .phi_v_mm = 0.1, .recall = false};
+        jali_predict_options opt = {.picture_mm = 8,
+                                    .phi_e_solid_mm = 0,
+                                    .phi_e_void_mm = 0,
+                                    .phi_s_mm = phi_mm,
+                                    .phi_v_mm = 0.1,
+                                    .recall = false};
         jali_bitmap picture;
         jali_reference reference;
         CHECK_OK(jali_bitmap_create(ctx, PICTURE_PX, PICTURE_PX, &picture));
@@ -252,7 +264,7 @@ TEST(specks_between_the_discs_of_a_void_are_no_pieces)
     jali_bitmap mask;
     jali_reference reference;
     jali_predict_options opt = options(SIDE);
-    opt.phi_e_mm = 0;
+    opt.phi_e_solid_mm = opt.phi_e_void_mm = 0;
     opt.recall = false;
     CHECK_OK(jali_bitmap_create(ctx, SIDE, SIDE, &mask));
     CHECK_OK(jali_reference_create(ctx, &mask, &opt, &reference));

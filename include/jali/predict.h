@@ -5,6 +5,7 @@
 #include <jali/bitmap.h>
 #include <jali/bytes.h>
 #include <jali/chart.h>
+#include <jali/printer.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -12,14 +13,21 @@ extern "C" {
 
 typedef struct jali_predict_options {
     double picture_mm;       // width of the picture on the surface, > 0
-    double phi_e_mm;         // how much wider a solid bar prints than drawn (0.1)
-    double phi_s_mm;         // narrowest solid that prints (0.3)
-    double phi_v_mm;         // narrowest void that prints (0.5)
+    double phi_e_solid_mm;   // how much wider a solid bar prints than drawn; < 0: narrower, a kerf (0.1)
+    double phi_e_void_mm;    // how much narrower a narrow void prints than drawn; < 0: wider (0.1)
+    double narrow_mm;        // voids up to this width are narrow; 0 (default) = 4 phi_v
+    double phi_s_mm;         // narrowest solid that prints, > 0 (0.3)
+    double phi_v_mm;         // narrowest void that prints, > 0 (0.5)
+    double hole_mm2;         // a round hole d wide prints hole_mm2 / d narrower still, >= 0 (0)
+    double corner_mm;        // radius of what is drawn as a sharp corner, >= 0 (0: what phi leaves)
     const jali_chart *chart; // of the mask to come; with a metric the lengths hold on the surface. NULL: flat
     bool recall;             // also measure the medial axes (costs more than the rest); default true
 } jali_predict_options;
 
 JALI_API jali_predict_options jali_predict_defaults(void);
+
+/// The defaults with all that a profile says.
+JALI_API jali_predict_options jali_predict_of(const jali_printer *printer);
 
 /// The picture at its own resolution, prepared once for any number of predictions.
 typedef struct jali_reference {
@@ -43,8 +51,8 @@ JALI_API jali_status jali_reference_create(jali_context *ctx, const jali_bitmap 
                                            const jali_predict_options *opt, jali_reference *reference);
 JALI_API void jali_reference_free(jali_context *ctx, jali_reference *reference);
 
-/// The forward model (docs/predict.md): the mask loses solid below phi_s, then voids below phi_v, then grows
-/// by phi_e / 2; exact discs throughout.
+/// The forward model (docs/predict.md): the mask loses solid below phi_s, then voids below phi_v; round holes
+/// shrink, edges move by half a phi_e, corners are rounded; exact discs throughout.
 ///   in     mask       any resolution; the picture lies margin_px inside its border on all sides
 ///          outside_solid   what surrounds the mask
 ///   fails  JALI_NO_MEMORY, JALI_BAD_VALUE

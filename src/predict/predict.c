@@ -1,16 +1,9 @@
-// The forward model of the printer, and the picture's error and recall under it.
-//
-// Source:  Binary Image Carving for 3D Printing, sections 4.2 and 6 (Figs. 6, 11, 14): solids below phi_s and
-//          voids below phi_v do not appear, solids come out phi_e wider than drawn.
-// Model:   printed = grow(close(open(mask, phi_s), phi_v), phi_e / 2) with discs on a grid finer than the
+// The picture's error and recall under the forward model of the printer (model.c), on a grid finer than the
 // picture.
-//          A disc has whole diameter floor(phi / pixel), so that a bar of exactly phi prints wherever it
-//          lies.
-//          With a metric they are ellipses of the place, nowhere larger than the disc.
-// Checked: tests/test_predict.c on bars of known width.
-#include <jali/predict.h>
-#include "raster/field.h"
-#include "base/base.h"
+//
+// Source:  Binary Image Carving for 3D Printing, section 6 (Figs. 6, 11, 14).
+// Checked: tests/test_predict.c.
+#include "predict/model.h"
 
 #include <math.h>
 
@@ -21,7 +14,44 @@ static const double FINE_PX_PER_PHI_S = 32;  // finer than this gains nothing: 1
 
 jali_predict_options jali_predict_defaults(void)
 {
-    return (jali_predict_options){.phi_e_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .recall = true};
+    return (jali_predict_options){
+        .phi_e_solid_mm = 0.1, .phi_e_void_mm = 0.1, .phi_s_mm = 0.3, .phi_v_mm = 0.5, .recall = true};
+}
+
+jali_predict_options jali_predict_of(const jali_printer *printer)
+{
+    jali_predict_options opt = jali_predict_defaults();
+    opt.phi_e_solid_mm = printer->phi_e_solid_mm.value;
+    opt.phi_e_void_mm = printer->phi_e_void_mm.value;
+    opt.phi_s_mm = printer->phi_s_mm.value;
+    opt.phi_v_mm = printer->phi_v_mm.value;
+    opt.hole_mm2 = printer->hole_mm2.value;
+    opt.corner_mm = printer->corner_mm.value;
+    return opt;
+}
+
+static jali_status check_options(jali_context *ctx, const jali_predict_options *opt)
+{
+    const struct {
+        const char *name;
+        double value, least;
+        bool least_is_in;
+    } figure[] = {
+        {"phi_e of solids", opt->phi_e_solid_mm, -1000, true},
+        {"phi_e of voids", opt->phi_e_void_mm, -1000, true},
+        {"the width of narrow voids", opt->narrow_mm, 0, true},
+        {"phi_s", opt->phi_s_mm, 0, false},
+        {"phi_v", opt->phi_v_mm, 0, false},
+        {"the growth of holes", opt->hole_mm2, 0, true},
+        {"the radius of corners", opt->corner_mm, 0, true},
+    };
+    for (size_t i = 0; i < sizeof figure / sizeof *figure; i++) {
+        double value = figure[i].value, least = figure[i].least;
+        if (!(figure[i].least_is_in ? value >= least : value > least) || !(value <= 1000))
+            return fail(ctx, JALI_BAD_VALUE, "%s is %g; %s %g and up to 1000 is accepted", figure[i].name,
+                        value, figure[i].least_is_in ? "from" : "more than", least);
+    }
+    return JALI_OK;
 }
 
 static int32_t choose_factor(double pixel_mm, double phi_s_mm, double most_stretch)
@@ -79,37 +109,6 @@ static double recall_of(jali_context *ctx, const jali_bitmap *axis, int64_t axis
     if (axis_count == 0) return 1;
     int64_t hit = count_combined(ctx, white ? RULE_AND : RULE_AND_NOT, axis, printed);
     return (double)hit / (double)axis_count;
-}
-
-// Print `mask` in place; `laid` is what the printer lays by itself, before voids fill up and edges grow.
-// `pixel_mm` is the grid's.
-static jali_status print_mask(jali_context *ctx, jali_bitmap *mask, bool outside, double pixel_mm,
-                              const tiling *tiles, const jali_predict_options *opt, jali_bitmap *laid)
-{
-    jali_status status;
-    jali_bitmap scratch = {0};
-    field solid = {0}, hollow = {0}, growth = {0};
-    const double tolerance = 1e-9; // phi / pixel is often a whole number that floating point misses by a hair
-    TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, &scratch));
-    double solid_px = fmax(1, floor(opt->phi_s_mm / pixel_mm + tolerance));
-    double void_px = fmax(1, floor(opt->phi_v_mm / pixel_mm + tolerance));
-    double growth_px = 2 * floor(opt->phi_e_mm / 2 / pixel_mm + 0.5);
-    TRY(field_of_discs(ctx, tiles, solid_px, 0, false, true, &solid));
-    TRY(field_of_discs(ctx, tiles, void_px, 0, false, true, &hollow));
-    TRY(field_of_discs(ctx, tiles, growth_px, 0.5, true, false, &growth));
-    TRY(field_open(ctx, mask, &solid, outside, &scratch, mask));
-    TRY(jali_bitmap_copy(ctx, mask, laid));
-    TRY(field_close(ctx, mask, &hollow, outside, &scratch, mask));
-    TRY(field_dilate(ctx, mask, &growth, outside, &scratch));
-    jali_bitmap swap = *mask;
-    *mask = scratch;
-    scratch = swap;
-done:
-    jali_bitmap_free(ctx, &scratch);
-    field_free(ctx, &solid);
-    field_free(ctx, &hollow);
-    field_free(ctx, &growth);
-    return status;
 }
 
 // The mask on the fine grid: the picture's part scaled exactly, the margin around it as the surroundings are.
@@ -172,13 +171,14 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
     tiling tiles = {0};
     const jali_bitmap *picture = &reference->picture;
     *prediction = (jali_prediction){0};
+    TRY(check_options(ctx, opt));
     double pixel_mm = opt->picture_mm / picture->width_px;
     double scale = (double)picture->width_px / (mask->width_px - 2 * margin_px);
     int32_t margin = (int32_t)ceil(margin_px * scale);
     TRY(jali_bitmap_create(ctx, picture->width_px + 2 * margin, picture->height_px + 2 * margin, &fine));
     TRY(place_mask(ctx, mask, margin_px, outside_solid, margin, &fine));
     TRY(place_metric(ctx, opt->chart, picture, margin, &tiles));
-    TRY(print_mask(ctx, &fine, outside_solid, pixel_mm, &tiles, opt, &laid));
+    TRY(print_mask(ctx, opt, &tiles, pixel_mm, outside_solid, &fine, &laid));
     TRY(count_pieces(ctx, &fine, &laid, &prediction->pieces));
     jali_bitmap_free(ctx, &laid);
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &prediction->printed));
