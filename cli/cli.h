@@ -40,6 +40,7 @@ typedef struct settings {
     int32_t size_px;                // of a sample or a render
     jali_render_options view;       // of a render
     jali_board_options board;
+    const char *measured; // widths typed in
     bool skip_intersections, walls; // of check
     jali_context_options context;
     double max_memory_mb;
@@ -69,6 +70,7 @@ typedef enum option_group {
     GROUP_REINFORCE = 131072,
     GROUP_SOLVER = 262144,
     GROUP_BOARD = 524288,
+    GROUP_CALIBRATE = 1048576,
 } option_group;
 
 typedef struct verb {
@@ -90,6 +92,7 @@ jali_status run_carve(jali_context *ctx, const settings *set);
 jali_status run_analyse(jali_context *ctx, const settings *set);
 jali_status run_check(jali_context *ctx, const settings *set);
 jali_status run_render(jali_context *ctx, const settings *set);
+jali_status run_calibrate(jali_context *ctx, const settings *set);
 jali_status run_board(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 

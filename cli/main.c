@@ -34,6 +34,8 @@ static const verb verbs[] = {
     {"sample", "NAME", "draw one of the built-in pictures", GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_sample},
     {"board", NULL, "the reference board, from which a printer's figures are measured",
      GROUP_BOARD | GROUP_RENDER | GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".3mf.stl.svg.dxf.png", run_board},
+    {"calibrate", "WIDTHS", "a printer's profile from what was measured on a printed board",
+     GROUP_CALIBRATE | GROUP_JSON | OUTPUT_AND_RUN, ".json", run_calibrate},
     {"list", "KIND", "list what is built in: samples, surfaces, materials, printers", GROUP_RUN, "",
      run_list},
 };

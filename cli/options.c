@@ -36,7 +36,7 @@ static const option options[] = {
      "height of the picture; one size gives the other"},
     {"frame", "MM", NUMBER, GROUP_SIZE, FIELD(make.place.frame_mm), 0, 1000, "mm",
      "width of the solid frame, 0 = none (2)"},
-    {"printer", "NAME|FILE", TEXT, GROUP_SIZE | GROUP_BOARD, FIELD(printer), 0, 0, 0,
+    {"printer", "NAME|FILE", TEXT, GROUP_SIZE | GROUP_BOARD | GROUP_CALIBRATE, FIELD(printer), 0, 0, 0,
      "what prints it: phi-e, phi-s, phi-v, material (\"jali list printers\"; a profile, a slicer's configuration)"},
     {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[0]), 0, 100, "mm",
      "how much wider a solid bar prints than drawn (the printer's; 0.1)"},
@@ -128,6 +128,9 @@ static const option options[] = {
 
     {"within", "MM", NUMBER, GROUP_BOARD, FIELD(board.most_mm), 40, 200, "mm",
      "the longest side the board may have (200)"},
+
+    {"measured", "LIST", TEXT, GROUP_CALIBRATE, FIELD(measured), 0, 0, 0,
+     "widths instead of a table: KIND:DESIGNED=MEASURED,... such as solid:0.4=0.52,void:0.3=0"},
 
     {"render", "FILE", TEXT, GROUP_RENDER, FIELD(render), 0, 0, 0, "draw the object as a PNG"},
     {"lamp", NULL, FLAG, GROUP_VIEW, FIELD(view.lamp), 0, 0, 0, "draw it at night, with a lamp inside"},
@@ -267,7 +270,7 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
     if (set->help) return true;
     if (set->job && set->operand)
         return wrong(sentence, "--job names the pictures; \"%.60s\" is one too many", set->operand);
-    if (v->operand && !set->operand && !set->job)
+    if (v->operand && !set->operand && !set->job && !set->measured)
         return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
     if (*v->suffixes && set->output_count == 0)
         return wrong(sentence, "jali %s needs an output file: -o NAME%.4s", v->name, v->suffixes);

@@ -18,6 +18,7 @@
 #include <jali/board.h>
 #include <jali/bridges.h>
 #include <jali/bytes.h>
+#include <jali/calibrate.h>
 #include <jali/carve.h>
 #include <jali/chart.h>
 #include <jali/check.h>

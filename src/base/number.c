@@ -131,6 +131,20 @@ static int write_float(char *text, double value)
     return 0;
 }
 
+// A number that people wrote: the few decimals that stand for it. Both are below 2^53 and a power of ten that
+// is exact, so their quotient is what read_decimal reads.
+static int write_plain(char *text, double value)
+{
+    enum { MOST_PLACES = 9 };
+    for (int places = 1; places <= MOST_PLACES; places++) {
+        double digits = nearbyint(value * power_of_ten[places]);
+        if (digits > 9e15 || digits / power_of_ten[places] != value) continue;
+        uint64_t all = (uint64_t)digits, unit = (uint64_t)power_of_ten[places];
+        return write_fixed(text, all / unit, all % unit, places);
+    }
+    return 0;
+}
+
 static int write_by_printf(char text[DECIMAL_BYTES], double value)
 {
     bool single = value == (double)(float)value;
@@ -159,5 +173,7 @@ int write_decimal(char text[DECIMAL_BYTES], double value)
         int written = write_float(text + length, magnitude);
         if (written) return length + written;
     }
+    int written = write_plain(text + length, magnitude);
+    if (written) return length + written;
     return write_by_printf(text, value);
 }
