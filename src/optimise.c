@@ -79,7 +79,10 @@ static jali_status choose_kernels(jali_context *ctx, const jali_optimise_options
                                   const jali_chart *chart, int32_t kernels_px[3])
 {
     jali_status status;
-    TRY(check_positive(ctx, "phi_e", opt->phi_e_mm, true));
+    TRY(check_positive(ctx, "phi_e (or a kerf)", fabs(opt->phi_e_mm), true));
+    if (opt->paper && opt->phi_e_mm < 0)
+        return fail(ctx, JALI_BAD_VALUE,
+                    "phi_e is %g mm, a kerf: the paper's method has none; leave --paper out", opt->phi_e_mm);
     TRY(check_positive(ctx, "phi_s", opt->phi_s_mm, false));
     TRY(check_positive(ctx, "phi_v", opt->phi_v_mm, false));
     TRY(check_positive(ctx, "epsilon", opt->epsilon_mm, true));
@@ -90,10 +93,12 @@ static jali_status choose_kernels(jali_context *ctx, const jali_optimise_options
         exact_kernels(opt, pixel_mm, kernels_px);
     for (int32_t i = 0; i < 3; i++)
         if (opt->kernels_px[i]) kernels_px[i] = opt->kernels_px[i];
-    if (kernels_px[0] < 1 || kernels_px[0] % 2 == 0 || kernels_px[1] < 1 || kernels_px[2] < 1 ||
+    if (kernels_px[0] < -4000 || kernels_px[0] % 2 == 0 || kernels_px[1] < 1 || kernels_px[2] < 1 ||
         MAX(kernels_px[0], MAX(kernels_px[1], kernels_px[2])) > 4000)
         return fail(ctx, JALI_BAD_VALUE,
-                    "kernels of %d, %d and %d px: omega_c must be odd and all three from 1 to 4000 px",
+                    "kernels of %d, %d and %d px: omega_c must be odd, from -4000 px on, the others from 1; "
+                    "up to 4000 "
+                    "px",
                     kernels_px[0], kernels_px[1], kernels_px[2]);
 done:
     return status;
@@ -289,7 +294,7 @@ static jali_status look_at_drawing(jali_context *ctx, optimising *o, const jali_
     jali_bitmap conflict = {0};
     jali_adapt_options printed = o->widths;
     printed.growth_px = 1;
-    printed.solid_px = o->widths.solid_px + o->widths.growth_px - 1;
+    printed.solid_px = MAX(o->widths.solid_px + o->widths.growth_px - 1, 1);
     printed.void_px = MAX(o->widths.void_px - o->widths.growth_px + 1, 1);
     jali_status status = look(ctx, o, drawing, &printed, &white, &black, &conflict);
     keep_or_drop(ctx, o, &white, &black, &conflict);

@@ -3,6 +3,7 @@
 #include "plain.h"
 #include "adapt/widths.h"
 
+#include <jali/compensate.h>
 #include <jali/connect.h>
 
 // The flat elements of the mask or of the print: e[1] the solid's, e[0] the void's.
@@ -483,6 +484,58 @@ TEST(a_void_of_one_printed_pixel)
     jali_bitmap_free(ctx, &a);
 }
 
+// A solid disc of the print, dilated by what a kerf takes, holds the mask's, and a void of the mask, widened
+// by it, holds the print's; both are as wide as asked for.
+TEST(with_a_kerf_mask_and_print_change_places)
+{
+    uint64_t seed = 41;
+    int64_t loose[2] = {0}, pixels = 0;
+    for (int32_t growth_px = -1; growth_px >= -9; growth_px -= 4) {
+        element mask[2], print[2];
+        jali_adapt_options opt = small_widths();
+        opt.solid_px = 16;
+        opt.growth_px = growth_px;
+        CHECK_OK(flat_elements(&opt, false, mask));
+        CHECK_OK(flat_elements(&opt, true, print));
+        CHECK_INT(mask[1].size, opt.solid_px);
+        CHECK_INT(mask[0].size, opt.void_px);
+        CHECK_INT(print[1].size, opt.solid_px + growth_px - 1);
+        CHECK_INT(print[0].size, opt.void_px - growth_px + 1);
+        jali_bitmap a = random_blobs(&seed, 240, 220, 23, 60);
+        check_print(&a, &opt, loose, &pixels);
+        jali_bitmap_free(ctx, &a);
+        for (int32_t tone = 0; tone < 2; tone++) {
+            element_free(ctx, &mask[tone]);
+            element_free(ctx, &print[tone]);
+        }
+    }
+}
+
+TEST(compensation_of_a_kerf_is_that_of_the_complement)
+{
+    uint64_t seed = 43;
+    for (int32_t size_px = -7; size_px < 1; size_px += 2)
+        for (int32_t shape = 0; shape < 2; shape++) {
+            jali_bitmap a = random_blobs(&seed, 150, 90, 11, 50), thicker, thinner;
+            jali_compensate_options opt = {shape ? JALI_SHAPE_SQUARE : JALI_SHAPE_DISC, size_px, true, NULL};
+            CHECK_OK(jali_compensate(ctx, &a, &opt, &thicker));
+            opt.size_px = 2 - size_px;
+            opt.outside_solid = false;
+            invert(ctx, &a, &a);
+            CHECK_OK(jali_compensate(ctx, &a, &opt, &thinner));
+            invert(ctx, &thinner, &thinner);
+            CHECK(same_bitmap(&thicker, &thinner));
+            jali_bitmap_free(ctx, &a);
+            jali_bitmap_free(ctx, &thicker);
+            jali_bitmap_free(ctx, &thinner);
+        }
+    jali_bitmap one = drawn_rows(1, "#"), none;
+    jali_compensate_options opt = {.size_px = -2};
+    CHECK_STATUS(jali_compensate(ctx, &one, &opt, &none), JALI_BAD_VALUE);
+    CHECK(none.word == NULL);
+    jali_bitmap_free(ctx, &one);
+}
+
 // --- Pruning
 
 // Two large areas a short way apart, and a speck far from both.
@@ -674,6 +727,8 @@ int main(void)
         cmocka_unit_test(a_print_keeps_to_its_elements_and_never_weighs_more_than_the_opening),
         cmocka_unit_test(widths_beyond_the_window_give_the_opening_and_closing),
         cmocka_unit_test(a_void_of_one_printed_pixel),
+        cmocka_unit_test(with_a_kerf_mask_and_print_change_places),
+        cmocka_unit_test(compensation_of_a_kerf_is_that_of_the_complement),
         cmocka_unit_test(far_specks_are_pruned_and_near_areas_stay),
         cmocka_unit_test(pruning_finds_the_best_tree_of_all),
         cmocka_unit_test(every_allocation_refused_once),

@@ -67,25 +67,31 @@ static void check_promises(const jali_optimised *r, const jali_chart *chart, con
     CHECK_INT(white.type[0] + white.type[1] + black.type[0] + black.type[1], 0);
 }
 
-// Both ways, with 1, 2 and 3 threads.
+// With 1, 2 and 3 threads.
+static void check_way(const jali_bitmap *drawing, const jali_chart *chart, const jali_optimise_options *opt,
+                      jali_context *by_threads[3])
+{
+    jali_optimised r[3];
+    for (int32_t i = 0; i < 3; i++) {
+        jali_status status = jali_optimise(by_threads[i], drawing, chart, opt, &r[i]);
+        if (status == JALI_NO_RESULT)
+            CHECK(r[i].mask.word == NULL && strstr(jali_message(by_threads[i]), "mm"));
+        else
+            CHECK_INT(status, JALI_OK);
+        CHECK(same_bitmap(&r[i].mask, &r[0].mask));
+        CHECK_INT(r[i].bridges, r[0].bridges);
+        CHECK_INT(r[i].round_count, r[0].round_count);
+    }
+    if (r[0].mask.word) check_promises(&r[0], chart, opt);
+    for (int32_t i = 0; i < 3; i++) jali_optimised_free(by_threads[i], &r[i]);
+}
+
 static void check_optimise(const jali_bitmap *drawing, const jali_chart *chart, jali_context *by_threads[3])
 {
     for (int32_t paper = 0; paper < 2; paper++) {
         jali_optimise_options opt = jali_optimise_defaults();
-        jali_optimised r[3];
         opt.paper = paper;
-        for (int32_t i = 0; i < 3; i++) {
-            jali_status status = jali_optimise(by_threads[i], drawing, chart, &opt, &r[i]);
-            if (status == JALI_NO_RESULT)
-                CHECK(r[i].mask.word == NULL && strstr(jali_message(by_threads[i]), "mm"));
-            else
-                CHECK_INT(status, JALI_OK);
-            CHECK(same_bitmap(&r[i].mask, &r[0].mask));
-            CHECK_INT(r[i].bridges, r[0].bridges);
-            CHECK_INT(r[i].round_count, r[0].round_count);
-        }
-        if (r[0].mask.word) check_promises(&r[0], chart, &opt);
-        for (int32_t i = 0; i < 3; i++) jali_optimised_free(by_threads[i], &r[i]);
+        check_way(drawing, chart, &opt, by_threads);
     }
 }
 
@@ -137,6 +143,63 @@ TEST(random_pictures_without_a_frame)
             jali_bitmap_free(ctx, &a);
         }
     close_thread_contexts(by_threads);
+}
+
+// A kerf takes from every bar; the widths hold in what is drawn all the same.
+TEST(random_pictures_for_a_laser)
+{
+    uint64_t seed = 14;
+    jali_context *by_threads[3];
+    jali_optimise_options opt = jali_optimise_defaults();
+    open_thread_contexts(by_threads);
+    for (int32_t i = 0; i < 8; i++) {
+        jali_bitmap a = random_blobs(&seed, 200, 160, 5 + 3 * (i % 4), 50 + 4 * i);
+        jali_chart chart = chart_of(200, 160, 0.025, false, 0);
+        opt.phi_e_mm = i < 4 ? -0.2 : -0.05;
+        opt.phi_v_mm = i % 4 < 2 ? 0.2 : 0.5;
+        check_way(&a, &chart, &opt, by_threads);
+        jali_bitmap_free(ctx, &a);
+    }
+    close_thread_contexts(by_threads);
+    jali_bitmap one = drawn_rows(1, "#");
+    jali_chart chart = chart_of(1, 1, 0.1, true, 0);
+    jali_optimised r;
+    opt.paper = true;
+    CHECK_STATUS(jali_optimise(ctx, &one, &chart, &opt, &r), JALI_BAD_VALUE);
+    CHECK(strstr(jali_message(ctx), "a kerf"));
+    jali_bitmap_free(ctx, &one);
+}
+
+// Bars of both tones as a laser cuts them: 0.2 mm of kerf are given back before, so they come out as drawn,
+// and without that they would not.
+TEST(a_laser_cuts_bars_as_they_are_drawn)
+{
+    enum { WIDE = 400, HIGH = 100 };               // 20 px a mm
+    static const int32_t bar[] = {20, 30, 40, 60}; // black ones
+    uint8_t *grey = malloc((size_t)WIDE * HIGH);
+    for (int32_t i = 0; i < WIDE * HIGH; i++) grey[i] = 255;
+    for (int32_t k = 0, x = 40; k < 4; x += 40 + bar[k++])
+        for (int32_t y = 20; y < HIGH - 20; y++) memset(grey + y * WIDE + x, 0, (size_t)bar[k]);
+    jali_picture picture = {WIDE, HIGH, grey};
+    jali_options opt = jali_defaults();
+    jali_result r;
+    opt.place.width_mm = WIDE / 20.0;
+    opt.solid = false;
+    CHECK_OK(jali_printer_find(ctx, "laser-acrylic", NULL, &opt.printer));
+    CHECK_OK(jali_make(ctx, &picture, &opt, &r));
+    CHECK(r.one_piece && r.printable);
+    CHECK_INT(r.optimised.kernels_px[0], -7); // 4 px of 0.025 mm a side
+    const jali_bitmap *print = &r.result_print.printed;
+    int32_t fine = print->width_px / WIDE, row = print->height_px / 2;
+    for (int32_t k = 0, x = 40; k < 4; x += 40 + bar[k++]) {
+        int32_t across = 0;
+        for (int32_t i = (x - 10) * fine; i < (x + bar[k] + 10) * fine; i++)
+            across += !jali_bitmap_get(print, i, row);
+        CHECK(abs(across - bar[k] * fine) <= 2); // of fine pixels of 0.0125 mm
+    }
+    CHECK(r.result_print.error_rate < r.connected_print.error_rate / 3);
+    jali_result_free(ctx, &r);
+    free(grey);
 }
 
 // Found by fuzz_pipeline: nothing to take off in the first round of the finish, yet a neck to mend.
@@ -436,6 +499,8 @@ int main(void)
         cmocka_unit_test(the_judge_tells_long_tips_from_short_ones),
         cmocka_unit_test(random_pictures_end_in_one_printable_piece),
         cmocka_unit_test(random_pictures_without_a_frame),
+        cmocka_unit_test(random_pictures_for_a_laser),
+        cmocka_unit_test(a_laser_cuts_bars_as_they_are_drawn),
         cmocka_unit_test(a_mask_that_opening_leaves_alone_is_mended_too),
         cmocka_unit_test(degenerate_pictures),
         cmocka_unit_test(a_picture_of_which_nothing_would_print_gets_a_sentence),

@@ -25,7 +25,8 @@ typedef struct jali_adapt_options {
                              // NULL (default): flat
     const struct jali_elements *elements; // what jali_elements_create made of these very options, so that
                                           // each call need not again. NULL (default): it does
-    int32_t growth_px; // omega_c: what the printer adds to a solid's width, plus 1; odd (default 1)
+    int32_t growth_px; // omega_c: what the printer adds to a solid's width, plus 1; odd; < 0: it takes away
+                       // (default 1)
     // jali_adapt_print alone:
     double axis_worth_white; // what a lost pixel of a detail's axis weighs, as a share of the narrowest
                              // width, 0 to

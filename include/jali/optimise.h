@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 typedef struct jali_optimise_options {
-    double phi_e_mm;       // how much wider a solid bar prints than drawn, >= 0 (0.1)
+    double phi_e_mm;       // how much wider a solid bar prints than drawn; < 0: narrower, a kerf (0.1)
     double phi_s_mm;       // narrowest solid that prints, > 0 (0.3)
     double phi_v_mm;       // narrowest void that prints, > 0 (0.5)
     double epsilon_mm;     // a thin tip longer than this counts as a feature, >= 0 (4)

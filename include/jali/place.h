@@ -34,7 +34,7 @@ typedef struct jali_place_options {
     double pixel_mm; // working pixel; 0 (default) = the coarsest of which the smaller of phi_s and
                      // phi_v holds at least 8 (4 across the steepest stretch of a surface) and phi_e / 2 a
                      // whole number
-    double phi_e_mm; // what the printer adds to a solid edge's two sides together, >= 0 (0.1)
+    double phi_e_mm; // what the printer adds to a solid edge's two sides together; < 0: takes away (0.1)
     double phi_s_mm, phi_v_mm; // narrowest solid and narrowest void that print, > 0 (0.3, 0.5)
     double frame_mm;           // width of the solid frame, >= 0; 0 = the picture's border is the plate's
     bool paper;                // the paper's own grid: one working pixel an input pixel, no resampling

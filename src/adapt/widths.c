@@ -3,11 +3,14 @@
 // A print painted with `printed` elements must survive as a mask under the `mask` ones: with G the growth,
 //     printed solid = mask solid (+) G        a solid disc of the print, eroded by G, holds the mask's
 //     mask void = printed void (+) G          a void disc of the print, widened by G, holds the mask's
-// Separate digital discs of the right sizes do not do that: their corners differ, and half the details die.
+// Where the printer takes away (a laser's kerf), mask and print change places. Of a tone's two elements one
+// is the smaller, and the other is its sum with G. Separate digital discs of the right sizes do not do that:
+// their corners differ, and half the details die.
 #include "adapt/widths.h"
 #include "base/base.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 jali_adapt_options jali_adapt_defaults(void)
 {
@@ -27,56 +30,59 @@ static jali_status check_widths(jali_context *ctx, const jali_adapt_options *opt
     if (opt->solid_px < 1 || opt->void_px < 1 || opt->solid_px > 4096 || opt->void_px > 4096)
         return fail(ctx, JALI_BAD_VALUE, "widths of %d px (solid) and %d px (void) are outside 1 .. 4096 px",
                     opt->solid_px, opt->void_px);
-    if (opt->growth_px < 1 || opt->growth_px % 2 == 0)
-        return fail(ctx, JALI_BAD_VALUE, "omega_c is %d px; an odd number from 1 on is accepted",
+    if (opt->growth_px < -4095 || opt->growth_px > 4096 || opt->growth_px % 2 == 0)
+        return fail(ctx, JALI_BAD_VALUE, "omega_c is %d px; an odd number from -4095 to 4095 is accepted",
                     opt->growth_px);
     return JALI_OK;
 }
 
-// A void that the growth would close altogether is one pixel in the print.
-static int32_t printed_void_px(const jali_adapt_options *opt)
+// What the printer adds to a solid's width, or takes from it.
+static int32_t added_px(const jali_adapt_options *opt)
 {
-    return MAX(opt->void_px - (opt->growth_px - 1), 1);
+    return opt->growth_px - 1;
 }
 
-static jali_status flat_mask(jali_context *ctx, const jali_adapt_options *opt, widths *w)
+// Whether the larger of a tone's two elements is the one in the print.
+static bool is_larger_in_print(const jali_adapt_options *opt, bool white)
+{
+    return white ? added_px(opt) >= 0 : added_px(opt) < 0;
+}
+
+// The size of the smaller one. What would be nothing in the print is one pixel.
+static int32_t smaller_px(const jali_adapt_options *opt, bool white)
+{
+    int32_t mask_px = white ? opt->solid_px : opt->void_px;
+    return is_larger_in_print(opt, white) ? mask_px : MAX(mask_px - abs(added_px(opt)), 1);
+}
+
+static jali_status flat_element(jali_context *ctx, const jali_adapt_options *opt, bool white, bool in_print,
+                                field *f)
 {
     jali_status status;
-    element growth = {0}, printed = {0}, solid = {0}, hollow = {0};
-    if (opt->shape == JALI_SHAPE_SQUARE) {
-        TRY(element_square(ctx, opt->solid_px, &solid));
-        TRY(element_square(ctx, opt->void_px, &hollow));
-    } else {
-        TRY(element_wide_disc(ctx, opt->solid_px, &solid));
-        TRY(element_disc(ctx, opt->growth_px, &growth));
-        TRY(element_disc(ctx, printed_void_px(opt), &printed));
-        TRY(element_sum(ctx, &printed, &growth, &hollow));
+    element growth = {0}, smaller = {0}, larger = {0};
+    if (opt->shape == JALI_SHAPE_SQUARE && !in_print) {
+        TRY(element_square(ctx, white ? opt->solid_px : opt->void_px, &smaller));
+        TRY(field_of_element(ctx, &smaller, f));
+        goto done;
     }
-    TRY(field_of_element(ctx, &solid, &w->solid));
-    TRY(field_of_element(ctx, &hollow, &w->hollow));
+    TRY(white ? element_wide_disc(ctx, smaller_px(opt, white), &smaller)
+              : element_disc(ctx, smaller_px(opt, white), &smaller));
+    TRY(element_disc(ctx, abs(added_px(opt)) + 1, &growth));
+    TRY(element_sum(ctx, &smaller, &growth, &larger));
+    TRY(field_of_element(ctx, in_print == is_larger_in_print(opt, white) ? &larger : &smaller, f));
 done:
     element_free(ctx, &growth);
-    element_free(ctx, &printed);
-    element_free(ctx, &solid);
-    element_free(ctx, &hollow);
+    element_free(ctx, &smaller);
+    element_free(ctx, &larger);
     return status;
 }
 
-static jali_status flat_print(jali_context *ctx, const jali_adapt_options *opt, widths *w)
+static jali_status flat(jali_context *ctx, const jali_adapt_options *opt, bool in_print, widths *w)
 {
     jali_status status;
-    element growth = {0}, mask = {0}, solid = {0}, hollow = {0};
-    TRY(element_wide_disc(ctx, opt->solid_px, &mask));
-    TRY(element_disc(ctx, opt->growth_px, &growth));
-    TRY(element_sum(ctx, &mask, &growth, &solid));
-    TRY(element_disc(ctx, printed_void_px(opt), &hollow));
-    TRY(field_of_element(ctx, &solid, &w->solid));
-    TRY(field_of_element(ctx, &hollow, &w->hollow));
+    TRY(flat_element(ctx, opt, true, in_print, &w->solid));
+    TRY(flat_element(ctx, opt, false, in_print, &w->hollow));
 done:
-    element_free(ctx, &growth);
-    element_free(ctx, &mask);
-    element_free(ctx, &solid);
-    element_free(ctx, &hollow);
     return status;
 }
 
@@ -95,22 +101,25 @@ static void kind_patches_free(jali_context *ctx, kind_patches *k)
     }
 }
 
-// The print's void is widened until the mask's, rounded as both are, is nowhere narrower than asked for.
-static jali_status fit_voids(jali_context *ctx, const jali_adapt_options *opt, const double metric[3],
-                             double safety, kind_patches *k)
+// Both elements of a tone. They are widened until the mask's, rounded as both are, is nowhere narrower than
+// asked for.
+static jali_status fit_tone(jali_context *ctx, const jali_adapt_options *opt, bool white,
+                            const double metric[3], double safety, const patch *growth, patch tone[2])
 {
     enum { MOST_TRIES = 200 };
     const double widening = 1.02;
     jali_status status = JALI_OK;
-    ellipse wanted = ellipse_of_disc(metric, opt->void_px * safety, 0);
-    double diameter_px = printed_void_px(opt) * safety;
+    bool larger_in_print = is_larger_in_print(opt, white);
+    patch *smaller = &tone[!larger_in_print], *larger = &tone[larger_in_print];
+    ellipse wanted = ellipse_of_disc(metric, (white ? opt->solid_px : opt->void_px) * safety, 0);
+    double diameter_px = smaller_px(opt, white) * safety;
     for (int32_t i = 0; i < MOST_TRIES; i++, diameter_px *= widening) {
-        ellipse printed = ellipse_of_disc(metric, diameter_px, 0);
-        patch_free(ctx, &k->hollow[0]);
-        patch_free(ctx, &k->hollow[1]);
-        TRY(patch_within(ctx, &printed, false, &k->hollow[1]));
-        TRY(patch_sum(ctx, &k->hollow[1], &k->growth, &k->hollow[0]));
-        if (patch_as_wide(&k->hollow[0], &wanted)) break;
+        ellipse e = ellipse_of_disc(metric, diameter_px, 0);
+        patch_free(ctx, smaller);
+        patch_free(ctx, larger);
+        TRY(white ? patch_around(ctx, &e, smaller) : patch_within(ctx, &e, false, smaller));
+        TRY(patch_sum(ctx, smaller, growth, larger));
+        if (patch_as_wide(&tone[0], &wanted)) break;
     }
 done:
     return status;
@@ -121,12 +130,10 @@ static jali_status patches_of_kind(jali_context *ctx, const jali_adapt_options *
 {
     jali_status status;
     double safety = exp(slack);
-    ellipse grown = ellipse_of_disc(metric, opt->growth_px - 1, 0.5);
-    ellipse solid = ellipse_of_disc(metric, opt->solid_px * safety, 0);
+    ellipse grown = ellipse_of_disc(metric, abs(added_px(opt)), 0.5);
     TRY(patch_within(ctx, &grown, true, &k->growth));
-    TRY(patch_around(ctx, &solid, &k->solid[0]));
-    TRY(patch_sum(ctx, &k->solid[0], &k->growth, &k->solid[1]));
-    TRY(fit_voids(ctx, opt, metric, safety, k));
+    TRY(fit_tone(ctx, opt, true, metric, safety, &k->growth, k->solid));
+    TRY(fit_tone(ctx, opt, false, metric, safety, &k->growth, k->hollow));
 done:
     return status;
 }
@@ -200,7 +207,7 @@ static jali_status make_widths(jali_context *ctx, const jali_adapt_options *opt,
     if (!is_flat(&w->tiles))
         TRY(curved(ctx, opt, in_print, w));
     else
-        TRY(in_print ? flat_print(ctx, opt, w) : flat_mask(ctx, opt, w));
+        TRY(flat(ctx, opt, in_print, w));
 done:
     if (status != JALI_OK) widths_free(ctx, w);
     return status;

@@ -26,7 +26,7 @@ static jali_status check_options(jali_context *ctx, const jali_place_options *op
     TRY(check_mm(ctx, "the picture's width", opt->width_mm, true));
     TRY(check_mm(ctx, "the picture's height", opt->height_mm, true));
     TRY(check_mm(ctx, "the working pixel", opt->pixel_mm, true));
-    TRY(check_mm(ctx, "phi_e", opt->phi_e_mm, true));
+    TRY(check_mm(ctx, "phi_e", fabs(opt->phi_e_mm), true));
     TRY(check_mm(ctx, "phi_s", opt->phi_s_mm, false));
     TRY(check_mm(ctx, "phi_v", opt->phi_v_mm, false));
     TRY(check_mm(ctx, "the frame", opt->frame_mm, true));
@@ -77,7 +77,7 @@ jali_status picture_size(jali_context *ctx, const jali_picture *picture, const j
 // rounded.
 double automatic_pixel(const jali_place_options *opt, double most_stretch)
 {
-    double width_mm = MIN(opt->phi_s_mm, opt->phi_v_mm), growth_mm = opt->phi_e_mm / 2;
+    double width_mm = MIN(opt->phi_s_mm, opt->phi_v_mm), growth_mm = fabs(opt->phi_e_mm) / 2;
     double coarsest = width_mm / MAX(px_a_feature, px_where_stretched * most_stretch);
     double fitting = growth_mm > 0 ? growth_mm / ceil(growth_mm / coarsest - 1e-9) : 0;
     return fitting >= coarsest / 2 ? fitting : coarsest;
@@ -86,7 +86,7 @@ double automatic_pixel(const jali_place_options *opt, double most_stretch)
 // Morphology near the border reaches twice the wider element and what the compensation takes.
 double margin_mm(const jali_place_options *opt)
 {
-    return opt->frame_mm > 0 ? 2 * MAX(opt->phi_s_mm, opt->phi_v_mm) + opt->phi_e_mm : 0;
+    return opt->frame_mm > 0 ? 2 * MAX(opt->phi_s_mm, opt->phi_v_mm) + fabs(opt->phi_e_mm) : 0;
 }
 
 jali_status check_grid(jali_context *ctx, double columns, double rows, double pixel_mm)

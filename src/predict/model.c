@@ -137,6 +137,17 @@ done:
     return status;
 }
 
+// What was laid loses to the kerf as well: a filled void can leave a thread between two others, and of that a
+// kerf leaves specks.
+static jali_status wear_laid(jali_context *ctx, printing *p, jali_bitmap *laid)
+{
+    double kerf_mm = -fmin(p->opt->phi_e_solid_mm, p->opt->phi_e_void_mm);
+    if (kerf_mm <= 0) return JALI_OK;
+    jali_status status = move_edges(ctx, p, laid, edge_px(p, kerf_mm), true, &p->scratch);
+    if (status == JALI_OK) swap_bitmaps(laid, &p->scratch);
+    return status;
+}
+
 jali_status print_mask(jali_context *ctx, const jali_predict_options *opt, const tiling *tiles,
                        double pixel_mm, bool outside, jali_bitmap *mask, jali_bitmap *laid)
 {
@@ -146,6 +157,7 @@ jali_status print_mask(jali_context *ctx, const jali_predict_options *opt, const
     TRY(lay_down(ctx, &p, laid));
     if (opt->hole_mm2 > 0) TRY(narrow_holes(ctx, &p));
     TRY(grow(ctx, &p));
+    TRY(wear_laid(ctx, &p, laid));
     if (opt->corner_mm > 0) TRY(round_corners(ctx, &p));
 done:
     jali_bitmap_free(ctx, &p.scratch);

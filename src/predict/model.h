@@ -35,7 +35,7 @@ jali_status round_corners(jali_context *ctx, printing *p);
 ///   in     outside   what surrounds it
 ///          pixel_mm  of its grid
 ///   inout  mask
-///   out    laid      what the printer lays by itself, before voids fill up and edges move; a new bitmap
+///   out    laid      what the printer lays by itself, before voids fill up and edges grow; a new bitmap
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT
 jali_status print_mask(jali_context *ctx, const jali_predict_options *opt, const tiling *tiles,
                        double pixel_mm, bool outside, jali_bitmap *mask, jali_bitmap *laid);
