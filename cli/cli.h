@@ -42,6 +42,8 @@ typedef struct settings {
     jali_board_options board;
     const char *measured; // widths typed in
     bool skip_intersections, walls; // of check
+    const char *gcode, *sl1, *scan; // of compare: one of them
+    jali_print_options print;       // likewise; its pixel 0 = as the archive says
     jali_context_options context;
     double max_memory_mb;
     int32_t progress; // progress_kind
@@ -71,6 +73,7 @@ typedef enum option_group {
     GROUP_SOLVER = 262144,
     GROUP_BOARD = 524288,
     GROUP_CALIBRATE = 1048576,
+    GROUP_WITNESS = 1 << 22, // a printed result to compare with; the output file may be left out
 } option_group;
 
 typedef struct verb {
@@ -91,6 +94,7 @@ jali_status run_adapt(jali_context *ctx, const settings *set);
 jali_status run_carve(jali_context *ctx, const settings *set);
 jali_status run_analyse(jali_context *ctx, const settings *set);
 jali_status run_check(jali_context *ctx, const settings *set);
+jali_status run_compare(jali_context *ctx, const settings *set);
 jali_status run_render(jali_context *ctx, const settings *set);
 jali_status run_calibrate(jali_context *ctx, const settings *set);
 jali_status run_board(jali_context *ctx, const settings *set);

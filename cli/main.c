@@ -27,6 +27,8 @@ static const verb verbs[] = {
      IMAGE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
      GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
+    {"compare", "PICTURE", "how far a print is from the picture: by the slicer's output, or by a scan",
+     GROUP_PICTURE | GROUP_SIZE | GROUP_WITNESS | GROUP_JSON | OUTPUT_AND_RUN, ".png", run_compare},
     {"check", "MODEL", "is a model a solid: closed, manifold, outward, nowhere through itself",
      GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
     {"render", "MODEL", "draw a model, by day or with a lamp inside",

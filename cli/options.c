@@ -132,6 +132,14 @@ static const option options[] = {
     {"measured", "LIST", TEXT, GROUP_CALIBRATE, FIELD(measured), 0, 0, 0,
      "widths instead of a table: KIND:DESIGNED=MEASURED,... such as solid:0.4=0.52,void:0.3=0"},
 
+    {"gcode", "FILE", TEXT, GROUP_WITNESS, FIELD(gcode), 0, 0, 0,
+     "the print is what this G-code lays: its extrusions, with their widths"},
+    {"filament", "MM", NUMBER, GROUP_WITNESS, FIELD(print.filament_mm), 0.1, 20, "mm",
+     "diameter of the filament where the G-code says neither it nor widths (1.75)"},
+    {"sl1", "FILE", TEXT, GROUP_WITNESS, FIELD(sl1), 0, 0, 0, "the print is what the layers of this SL1 file expose"},
+    {"sl1-pixel", "MM", NUMBER, GROUP_WITNESS, FIELD(print.pixel_mm), 0.001, 1, "mm",
+     "side of a pixel of those layers where the file does not say"},
+
     {"render", "FILE", TEXT, GROUP_RENDER, FIELD(render), 0, 0, 0, "draw the object as a PNG"},
     {"lamp", NULL, FLAG, GROUP_VIEW, FIELD(view.lamp), 0, 0, 0, "draw it at night, with a lamp inside"},
     {"view", "X,Y,Z", VECTOR, GROUP_VIEW, FIELD(view.view), 0, 0, 0,
@@ -165,10 +173,12 @@ settings default_settings(void)
         .wall = jali_shell_defaults(),
         .context = jali_context_defaults(),
         .size_px = 1000,
+        .print = jali_print_defaults(),
         .view = jali_render_defaults(),
         .phi_given_mm = {NAN, NAN, NAN},
         .board = jali_board_defaults(),
     };
+    set.print.pixel_mm = 0;
     set.make.place.width_mm = 0; // 70 stands unless a height is given
     return set;
 }
@@ -272,7 +282,7 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
         return wrong(sentence, "--job names the pictures; \"%.60s\" is one too many", set->operand);
     if (v->operand && !set->operand && !set->job && !set->measured)
         return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
-    if (*v->suffixes && set->output_count == 0)
+    if (*v->suffixes && set->output_count == 0 && !(v->groups & GROUP_WITNESS))
         return wrong(sentence, "jali %s needs an output file: -o NAME%.4s", v->name, v->suffixes);
     settle_options(set);
     set->context.max_memory_bytes = (uint64_t)(set->max_memory_mb * 1e6);

@@ -203,11 +203,16 @@ TEST(the_error_rate_is_what_is_counted_by_hand)
             want.white[y * 160 + x] = near;
         }
     CHECK(plain_equals(&want, &p.printed));
-    int32_t wrong = 0;
+    int32_t wrong = 0, missing = 0;
     for (int32_t y = 0; y < 120; y++)
-        for (int32_t x = 0; x < 160; x++)
-            wrong += plain_at(&want, x, y, false) != (int32_t)jali_bitmap_get(&picture, x / 4, y / 4);
+        for (int32_t x = 0; x < 160; x++) {
+            bool white = jali_bitmap_get(&picture, x / 4, y / 4);
+            wrong += plain_at(&want, x, y, false) != (int32_t)white;
+            missing += white && !plain_at(&want, x, y, false);
+        }
     CHECK(wrong > 16 * 4 * 10 && p.error_rate == wrong / (160.0 * 120.0));
+    CHECK(missing >= 64 && p.missing == missing / (160.0 * 120.0)); // the small square is 8 x 8
+    CHECK(p.excess == (wrong - missing) / (160.0 * 120.0));
     CHECK_INT(p.pieces, 1);
     plain_free(&want);
     jali_prediction_free(ctx, &p);

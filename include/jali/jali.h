@@ -22,6 +22,7 @@
 #include <jali/carve.h>
 #include <jali/chart.h>
 #include <jali/check.h>
+#include <jali/compare.h>
 #include <jali/compensate.h>
 #include <jali/connect.h>
 #include <jali/contours.h>

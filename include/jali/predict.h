@@ -40,6 +40,7 @@ typedef struct jali_reference {
 typedef struct jali_prediction {
     jali_bitmap printed;               // fine grid, the picture's area alone
     double error_rate;                 // share of fine pixels that differ from the picture, 0 .. 1
+    double missing, excess;            // its two parts: solid of the picture that is void, void that is solid
     double recall_white, recall_black; // share of the picture's medial axis that prints in its tone, 0 .. 1
     int32_t pieces; // 4-connected, surroundings included; specks of the closing are none (docs/predict.md)
 } jali_prediction;
@@ -59,6 +60,12 @@ JALI_API void jali_reference_free(jali_context *ctx, jali_reference *reference);
 JALI_API jali_status jali_predict(jali_context *ctx, const jali_reference *reference, const jali_bitmap *mask,
                                   int32_t margin_px, bool outside_solid, const jali_predict_options *opt,
                                   jali_prediction *prediction);
+
+/// How far a print is from the picture, whoever made it: error_rate, missing, excess and, when the reference
+/// has its axes, both recalls.
+///   inout  print   its `printed` has the size of the reference's picture
+///   fails  JALI_BAD_VALUE (another size), JALI_NO_MEMORY
+JALI_API jali_status jali_measure(jali_context *ctx, const jali_reference *reference, jali_prediction *print);
 JALI_API void jali_prediction_free(jali_context *ctx, jali_prediction *prediction);
 
 /// Draw how a print differs from the picture, as a PNG: solid light, void dark; red where solid is missing,

@@ -35,6 +35,17 @@ bool archive_has(zip_t *archive, const char *entry)
     return zip_name_locate(archive, entry, ZIP_FL_NOCASE) >= 0;
 }
 
+int64_t archive_count(zip_t *archive)
+{
+    return zip_get_num_entries(archive, 0);
+}
+
+const char *archive_name(zip_t *archive, int64_t index)
+{
+    const char *name = zip_get_name(archive, (zip_uint64_t)index, 0);
+    return name ? name : "";
+}
+
 static jali_status check_size(jali_context *ctx, const char *name, const char *entry, const zip_stat_t *known,
                               uint64_t limit)
 {
@@ -61,7 +72,7 @@ jali_status archive_unpack(jali_context *ctx, zip_t *archive, const char *name, 
     uint64_t total = 0;
     zip_int64_t index = zip_name_locate(archive, entry, ZIP_FL_NOCASE), got;
     if (index < 0 || zip_stat_index(archive, (zip_uint64_t)index, 0, &known) != 0)
-        TRY(fail(ctx, JALI_BAD_INPUT, "%s is an archive without %s, no 3MF", name, entry));
+        TRY(fail(ctx, JALI_BAD_INPUT, "%s is an archive without %s", name, entry));
     TRY(check_size(ctx, name, entry, &known, limit));
     file = zip_fopen_index(archive, (zip_uint64_t)index, 0);
     if (!file) TRY(fail(ctx, JALI_BAD_INPUT, "%s: cannot unpack %s: %s", name, entry, zip_strerror(archive)));

@@ -21,6 +21,9 @@ jali_status archive_unpack(jali_context *ctx, zip_t *archive, const char *name, 
                            jali_status (*take)(void *user, const char *piece, size_t size, bool last),
                            void *user);
 
+/// Entries in all, and the name of each; "" where it cannot be told.
+int64_t archive_count(zip_t *archive);
+const char *archive_name(zip_t *archive, int64_t index);
 bool archive_has(zip_t *archive, const char *entry);
 
 #endif

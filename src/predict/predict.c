@@ -162,12 +162,37 @@ done:
     return status;
 }
 
+jali_status jali_measure(jali_context *ctx, const jali_reference *reference, jali_prediction *print)
+{
+    jali_status status;
+    jali_bitmap coarse = {0};
+    const jali_bitmap *picture = &reference->picture, *printed = &print->printed;
+    if (printed->width_px != picture->width_px || printed->height_px != picture->height_px)
+        return fail(ctx, JALI_BAD_VALUE,
+                    "a print of %d x %d px cannot be measured on a picture of %d x %d px", printed->width_px,
+                    printed->height_px, picture->width_px, picture->height_px);
+    double all = (double)picture->width_px * picture->height_px;
+    int64_t missing = count_combined(ctx, RULE_AND_NOT, picture, printed);
+    int64_t excess = count_combined(ctx, RULE_AND_NOT, printed, picture);
+    print->missing = (double)missing / all;
+    print->excess = (double)excess / all;
+    print->error_rate = (double)(missing + excess) / all;
+    if (!reference->axis_white.word) return JALI_OK;
+    TRY(jali_bitmap_create(ctx, reference->axis_white.width_px, reference->axis_white.height_px, &coarse));
+    resize_nearest(ctx, printed, 0, 0, printed->width_px, printed->height_px, &coarse);
+    print->recall_white = recall_of(ctx, &reference->axis_white, reference->axis_white_count, &coarse, true);
+    print->recall_black = recall_of(ctx, &reference->axis_black, reference->axis_black_count, &coarse, false);
+done:
+    jali_bitmap_free(ctx, &coarse);
+    return status;
+}
+
 jali_status jali_predict(jali_context *ctx, const jali_reference *reference, const jali_bitmap *mask,
                          int32_t margin_px, bool outside_solid, const jali_predict_options *opt,
                          jali_prediction *prediction)
 {
     jali_status status;
-    jali_bitmap fine = {0}, laid = {0}, coarse = {0};
+    jali_bitmap fine = {0}, laid = {0};
     tiling tiles = {0};
     const jali_bitmap *picture = &reference->picture;
     *prediction = (jali_prediction){0};
@@ -183,22 +208,11 @@ jali_status jali_predict(jali_context *ctx, const jali_reference *reference, con
     jali_bitmap_free(ctx, &laid);
     TRY(jali_bitmap_create(ctx, picture->width_px, picture->height_px, &prediction->printed));
     resize_nearest(ctx, &fine, margin, margin, picture->width_px, picture->height_px, &prediction->printed);
-    prediction->error_rate = (double)count_combined(ctx, RULE_XOR, picture, &prediction->printed) /
-                             ((double)picture->width_px * picture->height_px);
-    if (opt->recall) {
-        TRY(jali_bitmap_create(ctx, reference->axis_white.width_px, reference->axis_white.height_px,
-                               &coarse));
-        resize_nearest(ctx, &prediction->printed, 0, 0, picture->width_px, picture->height_px, &coarse);
-        prediction->recall_white =
-            recall_of(ctx, &reference->axis_white, reference->axis_white_count, &coarse, true);
-        prediction->recall_black =
-            recall_of(ctx, &reference->axis_black, reference->axis_black_count, &coarse, false);
-    }
+    TRY(jali_measure(ctx, reference, prediction));
 done:
     if (status != JALI_OK) jali_prediction_free(ctx, prediction);
     jali_bitmap_free(ctx, &fine);
     jali_bitmap_free(ctx, &laid);
-    jali_bitmap_free(ctx, &coarse);
     tiling_free(ctx, &tiles);
     return status;
 }
