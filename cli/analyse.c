@@ -1,6 +1,7 @@
 // jali analyse PICTURE|MODEL: what a load does to a picture carved and left as it is, or to a plate from a
 // model file.
 #include "outputs.h"
+#include "figures.h"
 #include "structure.h"
 #include "base/bytes.h"
 
@@ -25,12 +26,7 @@ static jali_status model_json(jali_context *ctx, const settings *set, const jali
     json_t *figures = json_pack("{s:i, s:s, s:f, s:o, s:{s:b}}", "version", 1, "model", name_of(set->operand),
                                 "thickness_mm", thickness_mm, "structure", structure_of(set, s), "promises",
                                 "sound", s->sound);
-    char *text = figures ? json_dumps(figures, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
-    jali_status status =
-        text ? bytes_print(ctx, json, "%s\n", text) : fail(ctx, JALI_NO_MEMORY, "no memory for the figures");
-    free(text);
-    json_decref(figures);
-    return status;
+    return append_json(ctx, figures, json);
 }
 
 // One analysis, as the only round of a strengthening that lays nothing.

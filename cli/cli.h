@@ -29,18 +29,18 @@ typedef struct settings {
     double limit_mpa;                   // 0 = the material's
     bool no_structure;
     jali_read_options read;
-    jali_options make;              // of all stages
-    const char *printer;            // name or file of a profile; NULL = none
-    double phi_given_mm[3];         // --phi-e, -s, -v as given; NaN: the printer's
-    const jali_material *material;  // as given; NULL: the printer's
-    const char *surface;            // what to carve, as jali_surface_make takes it; NULL = a plate
-    jali_shell_options wall;        // of a surface
-    double thickness_mm;            // of plate or wall; 0 = as usual for either
-    const char *job;                // file with the pictures of one surface
-    int32_t size_px;                // of a sample or a render
-    jali_render_options view;       // of a render
+    jali_options make;             // of all stages
+    const char *printer;           // name or file of a profile; NULL = none
+    double phi_given_mm[3];        // --phi-e, -s, -v as given; NaN: the printer's
+    const jali_material *material; // as given; NULL: the printer's
+    const char *surface;           // what to carve, as jali_surface_make takes it; NULL = a plate
+    jali_shell_options wall;       // of a surface
+    double thickness_mm;           // of plate or wall; 0 = as usual for either
+    const char *job;               // file with the pictures of one surface
+    int32_t size_px;               // of a sample or a render
+    jali_render_options view;      // of a render
     jali_board_options board;
-    const char *measured; // widths typed in
+    const char *measured;           // widths typed in
     bool skip_intersections, walls; // of check
     const char *gcode, *sl1, *scan; // of compare: one of them
     jali_print_options print;       // likewise; its pixel 0 = as the archive says
@@ -73,7 +73,8 @@ typedef enum option_group {
     GROUP_SOLVER = 262144,
     GROUP_BOARD = 524288,
     GROUP_CALIBRATE = 1048576,
-    GROUP_WITNESS = 1 << 22, // a printed result to compare with; the output file may be left out
+    GROUP_WITNESS = 1 << 22,      // a printed result to compare with
+    WRITES_NOTHING_TOO = 1 << 30, // no options: what is to be written, -o, may be left out
 } option_group;
 
 typedef struct verb {
@@ -98,6 +99,7 @@ jali_status run_compare(jali_context *ctx, const settings *set);
 jali_status run_render(jali_context *ctx, const settings *set);
 jali_status run_calibrate(jali_context *ctx, const settings *set);
 jali_status run_board(jali_context *ctx, const settings *set);
+jali_status run_predict(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 
 /// Draw a mesh as the settings say, as a PNG; appended.

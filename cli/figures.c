@@ -1,4 +1,5 @@
 // The figures of a run as JSON, version 1. Keys are kept; new ones may come.
+#include "figures.h"
 #include "structure.h"
 #include "base/bytes.h"
 
@@ -25,7 +26,7 @@ static json_t *adapt_of(const jali_optimised *o)
                      types_of(o->residual.black));
 }
 
-static json_t *print_of(const jali_prediction *p, bool recall)
+json_t *print_of(const jali_prediction *p, bool recall)
 {
     json_t *print = json_pack("{s:f, s:i}", "error_rate", p->error_rate, "pieces", p->pieces);
     if (recall) {
@@ -78,8 +79,7 @@ static json_t *promises_of(const made *m)
                      m->set[0].make.structure ? json_boolean(sound_of(m)) : json_null());
 }
 
-// Three figures for all, and which profile they are of, if of one.
-static json_t *printer_of(const settings *set)
+json_t *printer_of(const settings *set)
 {
     const jali_optimise_options *phi = &set->make.optimise;
     const jali_printer *p = &set->make.printer;
@@ -162,13 +162,17 @@ static json_t *figures_of(jali_context *ctx, const made *m)
     return NULL;
 }
 
-jali_status figures_json(jali_context *ctx, const made *m, jali_bytes *json)
+jali_status append_json(jali_context *ctx, json_t *figures, jali_bytes *json)
 {
-    json_t *figures = figures_of(ctx, m);
     char *text = figures ? json_dumps(figures, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     jali_status status =
         text ? bytes_print(ctx, json, "%s\n", text) : fail(ctx, JALI_NO_MEMORY, "no memory for the figures");
     free(text);
     json_decref(figures);
     return status;
+}
+
+jali_status figures_json(jali_context *ctx, const made *m, jali_bytes *json)
+{
+    return append_json(ctx, figures_of(ctx, m), json);
 }

@@ -27,15 +27,20 @@ static const verb verbs[] = {
      IMAGE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
      GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
+    {"predict", "PICTURE|MASK",
+     "what the printer would make of a picture as it is: how much of it is wrong, and where",
+     GROUP_PICTURE | GROUP_SIZE | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png", run_predict},
     {"compare", "PICTURE", "how far a print is from the picture: by the slicer's output, or by a scan",
-     GROUP_PICTURE | GROUP_SIZE | GROUP_WITNESS | GROUP_JSON | OUTPUT_AND_RUN, ".png", run_compare},
+     GROUP_PICTURE | GROUP_SIZE | GROUP_WITNESS | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png",
+     run_compare},
     {"check", "MODEL", "is a model a solid: closed, manifold, outward, nowhere through itself",
      GROUP_CHECK | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_check},
     {"render", "MODEL", "draw a model, by day or with a lamp inside",
      GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_render},
     {"sample", "NAME", "draw one of the built-in pictures", GROUP_SIDE | OUTPUT_AND_RUN, ".png", run_sample},
     {"board", NULL, "the reference board, from which a printer's figures are measured",
-     GROUP_BOARD | GROUP_RENDER | GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".3mf.stl.svg.dxf.png", run_board},
+     GROUP_BOARD | GROUP_RENDER | GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".3mf.stl.svg.dxf.png",
+     run_board},
     {"calibrate", "WIDTHS", "a printer's profile from what was measured on a printed board",
      GROUP_CALIBRATE | GROUP_JSON | OUTPUT_AND_RUN, ".json", run_calibrate},
     {"list", "KIND", "list what is built in: samples, surfaces, materials, printers", GROUP_RUN, "",
@@ -69,8 +74,10 @@ static int print_help(void)
 
 static int print_verb_help(const verb *v)
 {
-    printf("jali %s%s%s%s%.4s: %s\n\n", v->name, v->operand ? " " : "", v->operand ? v->operand : "",
-           *v->suffixes ? " -o NAME" : "", v->suffixes, v->what);
+    bool optional = v->groups & WRITES_NOTHING_TOO;
+    printf("jali %s%s%s", v->name, v->operand ? " " : "", v->operand ? v->operand : "");
+    if (*v->suffixes) printf(" %s-o NAME%.4s%s", optional ? "[" : "", v->suffixes, optional ? "]" : "");
+    printf(": %s\n\n", v->what);
     print_options(v);
     return EXIT_DONE;
 }

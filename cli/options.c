@@ -282,7 +282,7 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
         return wrong(sentence, "--job names the pictures; \"%.60s\" is one too many", set->operand);
     if (v->operand && !set->operand && !set->job && !set->measured)
         return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
-    if (*v->suffixes && set->output_count == 0 && !(v->groups & GROUP_WITNESS))
+    if (*v->suffixes && !(v->groups & WRITES_NOTHING_TOO) && set->output_count == 0)
         return wrong(sentence, "jali %s needs an output file: -o NAME%.4s", v->name, v->suffixes);
     settle_options(set);
     set->context.max_memory_bytes = (uint64_t)(set->max_memory_mb * 1e6);

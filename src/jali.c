@@ -116,22 +116,53 @@ static jali_status framed(jali_context *ctx, const jali_bitmap *picture, bool ou
     return JALI_OK;
 }
 
-// What the printer makes of the picture as it is, of the picture connected and no more, and of the result.
-static jali_status predict(jali_context *ctx, const jali_options *opt, jali_result *r)
+enum { MARGIN_PX = 16 }; // around a picture at its own resolution
+
+jali_predict_options jali_prediction_options(const jali_options *opt)
 {
-    jali_status status;
-    enum { MARGIN_PX = 16 };
-    bool outside = r->chart.outside_solid;
-    jali_reference reference = {0};
-    jali_bitmap plain = {0};
     jali_predict_options p = jali_predict_of(&opt->printer);
     if (!*opt->printer.name) {
         p.phi_e_solid_mm = p.phi_e_void_mm = opt->optimise.phi_e_mm;
         p.phi_s_mm = opt->optimise.phi_s_mm;
         p.phi_v_mm = opt->optimise.phi_v_mm;
     }
-    p.chart = &r->chart;
     p.recall = opt->recall;
+    return p;
+}
+
+jali_status jali_predict_picture(jali_context *ctx, jali_picture *picture, const jali_options *given,
+                                 jali_result *r)
+{
+    jali_status status;
+    jali_options opt = agreed(given);
+    jali_reference reference = {0};
+    jali_bitmap plain = {0};
+    jali_predict_options p = jali_prediction_options(&opt);
+    bool outside = opt.place.frame_mm > 0;
+    *r = (jali_result){0};
+    TRY(black_and_white(ctx, picture, &opt, r));
+    p.picture_mm = opt.place.width_mm > 0 ? opt.place.width_mm
+                                          : opt.place.height_mm * r->input.width_px / r->input.height_px;
+    TRY(step(ctx, "predict", 0));
+    TRY(jali_reference_create(ctx, &r->input, &p, &reference));
+    TRY(framed(ctx, &r->input, outside, MARGIN_PX, &plain));
+    TRY(jali_predict(ctx, &reference, &plain, MARGIN_PX, outside, &p, &r->input_print));
+done:
+    if (status != JALI_OK) jali_result_free(ctx, r);
+    jali_reference_free(ctx, &reference);
+    jali_bitmap_free(ctx, &plain);
+    return status;
+}
+
+// What the printer makes of the picture as it is, of the picture connected and no more, and of the result.
+static jali_status predict(jali_context *ctx, const jali_options *opt, jali_result *r)
+{
+    jali_status status;
+    bool outside = r->chart.outside_solid;
+    jali_reference reference = {0};
+    jali_bitmap plain = {0};
+    jali_predict_options p = jali_prediction_options(opt);
+    p.chart = &r->chart;
     p.picture_mm = jali_chart_pixel_mm(&r->chart) * (r->chart.width_px - 2 * r->chart.margin_px);
     TRY(step(ctx, "predict", 0));
     TRY(jali_reference_create(ctx, &r->input, &p, &reference));

@@ -172,6 +172,27 @@ TEST(a_printer_sets_what_no_option_does)
     CHECK(strstr(printed, "\"name\": \"steel\""));
 }
 
+TEST(predict_says_what_a_printer_would_make_of_a_picture)
+{
+    char json[TEXT_BYTES], of_adapt[TEXT_BYTES];
+    run("sample rings -o rings.png --size 200", 0, "");
+    run("predict rings.png", 0, "would come out wrong");
+    run("predict rings.png --printer hori-z500 --width 40 -o map.png --json p.json", 0, "would be there");
+    read_text("p.json", json);
+    run("adapt rings.png --printer hori-z500 --width 40 -o a.png --json a.json", 0, "");
+    read_text("a.json", of_adapt);
+    const char *error = strstr(json, "\"error_rate\": "), *input = strstr(of_adapt, "\"error_rate_input\": ");
+    CHECK(error && input && strtod(error + 14, NULL) > 0);
+    CHECK(strtod(error + 14, NULL) == strtod(input + 20, NULL));
+    CHECK(strstr(json, "\"name\": \"hori-z500\"") && access("map.png", F_OK) == 0);
+    run("predict rings.png --width 40 -o map.png", 2, "exists");
+    run("predict rings.png --printer laser-acrylic --phi-e -1", 0, "would come out wrong");
+    run("predict rings.png -o map.svg", 2, "does not write this type");
+    unlink("map.png");
+    unlink("rings.png");
+    unlink("a.png");
+}
+
 TEST(bad_pictures_are_rejected)
 {
     write_text("empty.png", "", 0);
@@ -537,6 +558,7 @@ int main(void)
         cmocka_unit_test(usage_is_checked_before_anything_is_done),
         cmocka_unit_test(numbers_are_numbers_in_their_range),
         cmocka_unit_test(a_printer_sets_what_no_option_does),
+        cmocka_unit_test(predict_says_what_a_printer_would_make_of_a_picture),
         cmocka_unit_test(bad_pictures_are_rejected),
         cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),
         cmocka_unit_test(pictures_are_carved_through_a_surface),

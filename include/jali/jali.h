@@ -130,6 +130,20 @@ JALI_API jali_status jali_make_on(jali_context *ctx, jali_surface *surface, cons
                                   jali_picture *picture, const jali_options *opt, int32_t count,
                                   jali_result *result, jali_object *object);
 
+/// How a run with these options is predicted: by its printer, or by the three figures of `optimise`.
+/// picture_mm is 0 and the chart flat.
+JALI_API jali_predict_options jali_prediction_options(const jali_options *opt);
+
+/// What the printer makes of a picture as it is, of place's size on a plate: nothing connected, nothing
+/// adapted.
+///   in     opt       NULL means the defaults; `threshold`, `printer`, `place`, `recall` and the figures of
+///                    `optimise` count
+///   inout  picture   rewritten by a local threshold only
+///   out    result    threshold, input, input_pieces and input_print; free with jali_result_free
+///   fails  JALI_BAD_VALUE, JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+JALI_API jali_status jali_predict_picture(jali_context *ctx, jali_picture *picture, const jali_options *opt,
+                                          jali_result *result);
+
 /// The whole pipeline on a picture, as a plate.
 ///   in     opt       NULL means the defaults
 ///   inout  picture   rewritten by a local threshold only
