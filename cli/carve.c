@@ -114,6 +114,10 @@ static void tell_picture(const settings *set, const jali_picture *picture, const
     say(set, "%d x %d px in %d white piece%s; %d bridge%s laid", picture->width_px, picture->height_px,
         r->input_pieces, r->input_pieces == 1 ? "" : "s", r->optimised.bridges,
         r->optimised.bridges == 1 ? "" : "s");
+    if (set->make.nudge_rounds)
+        say(set, "nudged in %d round%s: %.2f %% of the predicted print wrong before, %.2f %% after",
+            r->nudge.rounds, r->nudge.rounds == 1 ? "" : "s", 100 * r->nudge.error_before,
+            100 * r->nudge.error_after);
     if (set->make.predict)
         say(set, "predicted print: %.2f %% of it wrong (%.2f %% when only connected), %d piece%s",
             100 * r->result_print.error_rate, 100 * r->connected_print.error_rate, r->result_print.pieces,

@@ -79,6 +79,13 @@ static json_t *promises_of(const made *m)
                      m->set[0].make.structure ? json_boolean(sound_of(m)) : json_null());
 }
 
+static json_t *nudge_of(const settings *set, const jali_nudge_report *n)
+{
+    if (!set->make.nudge_rounds) return json_null();
+    return json_pack("{s:i, s:f, s:f, s:I}", "rounds", n->rounds, "error_rate_before", n->error_before,
+                     "error_rate_after", n->error_after, "changed_px", (json_int_t)n->changed_px);
+}
+
 json_t *printer_of(const settings *set)
 {
     const jali_optimise_options *phi = &set->make.optimise;
@@ -128,16 +135,17 @@ static json_t *picture_of(const settings *set, const jali_picture *picture, cons
     int32_t columns = r->chart.width_px - 2 * r->chart.margin_px,
             rows = r->chart.height_px - 2 * r->chart.margin_px;
     const int32_t *kernel = r->optimised.kernels_px;
-    return json_pack(
-        "{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:o, s:{s:i, s:i, s:i},"
-        " s:{s:i, s:I, s:i}, s:o, s:o, s:o}",
-        "input", "width_px", picture->width_px, "height_px", picture->height_px, "white_components",
-        r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm, rows * pixel_mm, "grid_px",
-        columns, rows, "pixel_mm", pixel_mm, "place", set->surface ? place_of(r) : json_null(), "printer",
-        printer_of(set), "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2],
-        "connect", "bridges", r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels,
-        "pieces_dropped", r->optimised.pieces_dropped, "adapt", adapt_of(&r->optimised), "predict",
-        predict_of(set, r), "structure", structure_of(set, &r->strength));
+    return json_pack("{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:o, s:{s:i, s:i, s:i},"
+                     " s:{s:i, s:I, s:i}, s:o, s:o, s:o, s:o}",
+                     "input", "width_px", picture->width_px, "height_px", picture->height_px,
+                     "white_components", r->input_pieces, "threshold", r->threshold, "size_mm",
+                     columns * pixel_mm, rows * pixel_mm, "grid_px", columns, rows, "pixel_mm", pixel_mm,
+                     "place", set->surface ? place_of(r) : json_null(), "printer", printer_of(set),
+                     "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2],
+                     "connect", "bridges", r->optimised.bridges, "pixels",
+                     (json_int_t)r->optimised.bridge_pixels, "pieces_dropped", r->optimised.pieces_dropped,
+                     "adapt", adapt_of(&r->optimised), "nudge", nudge_of(set, &r->nudge), "predict",
+                     predict_of(set, r), "structure", structure_of(set, &r->strength));
 }
 
 // The first picture's figures stand at the top; a job lists all of them as "pictures" too.

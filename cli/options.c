@@ -53,6 +53,8 @@ static const option options[] = {
      "length above which a thin tip counts as a feature (4)"},
     {"detail", "WEIGHT", NUMBER, GROUP_METHOD, FIELD(make.optimise.detail), 0, 100, "",
      "weight of fine detail against wrong pixels; 2 draws more of it, and wider (1)"},
+    {"nudge", "ROUNDS", WHOLE, GROUP_METHOD, FIELD(make.nudge_rounds), 0, 100, 0,
+     "move edges until the predicted print comes nearest to the picture, at most so many rounds; 3 is enough (0)"},
     {"kernels", "C,W,B", KERNELS, GROUP_METHOD, 0, 0, 0, 0,
      "set the elements' sizes in working pixels outright"},
     {"no-predict", NULL, FLAG_OFF, GROUP_METHOD, FIELD(make.predict), 0, 0, 0,

@@ -1,7 +1,7 @@
 // The whole pipeline. Read this first.
 //
-//     picture -> threshold -> place -> optimise -> trace -> strengthen -> carve -> check
-//                                 \_______ predict ________/
+//     picture -> threshold -> place -> optimise -> nudge -> trace -> strengthen -> carve -> check
+//                                 \________ predict ________/
 //
 // A plate is carved from its contours; a surface is hollowed out first, then each picture is pierced through
 // the wall, then the wall becomes a solid.
@@ -14,7 +14,7 @@
 
 const char *jali_stage_name(int32_t stage)
 {
-    static const char *const name[JALI_STAGES] = {"threshold", "place",      "optimise", "predict",
+    static const char *const name[JALI_STAGES] = {"threshold", "place",      "optimise", "nudge", "predict",
                                                   "trace",     "strengthen", "carve",    "check"};
     return stage >= 0 && stage < JALI_STAGES ? name[stage] : "";
 }
@@ -154,6 +154,29 @@ done:
     return status;
 }
 
+// The same, for where the picture lies.
+static jali_predict_options prediction_on_chart(const jali_options *opt, const jali_chart *chart)
+{
+    jali_predict_options p = jali_prediction_options(opt);
+    p.chart = chart;
+    p.picture_mm = jali_chart_pixel_mm(chart) * (chart->width_px - 2 * chart->margin_px);
+    return p;
+}
+
+static jali_status nudge(jali_context *ctx, const jali_options *opt, jali_result *r)
+{
+    jali_status status;
+    jali_reference reference = {0};
+    jali_predict_options p = prediction_on_chart(opt, &r->chart);
+    p.recall = false;
+    TRY(jali_reference_create(ctx, &r->input, &p, &reference));
+    TRY(jali_nudge(ctx, &reference, &p, &r->chart, &opt->optimise, opt->nudge_rounds, &r->optimised,
+                   &r->nudge));
+done:
+    jali_reference_free(ctx, &reference);
+    return status;
+}
+
 // What the printer makes of the picture as it is, of the picture connected and no more, and of the result.
 static jali_status predict(jali_context *ctx, const jali_options *opt, jali_result *r)
 {
@@ -161,9 +184,7 @@ static jali_status predict(jali_context *ctx, const jali_options *opt, jali_resu
     bool outside = r->chart.outside_solid;
     jali_reference reference = {0};
     jali_bitmap plain = {0};
-    jali_predict_options p = jali_prediction_options(opt);
-    p.chart = &r->chart;
-    p.picture_mm = jali_chart_pixel_mm(&r->chart) * (r->chart.width_px - 2 * r->chart.margin_px);
+    jali_predict_options p = prediction_on_chart(opt, &r->chart);
     TRY(step(ctx, "predict", 0));
     TRY(jali_reference_create(ctx, &r->input, &p, &reference));
     TRY(framed(ctx, &r->input, outside, MARGIN_PX, &plain));
@@ -231,6 +252,8 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     lap(r->seconds, JALI_STAGE_PLACE, &begun);
     TRY(jali_optimise(ctx, &drawing, &r->chart, &opt->optimise, &r->optimised));
     lap(r->seconds, JALI_STAGE_OPTIMISE, &begun);
+    if (opt->nudge_rounds) TRY(nudge(ctx, opt, r));
+    lap(r->seconds, JALI_STAGE_NUDGE, &begun);
     if (opt->solid) TRY(jali_trace(ctx, &r->optimised.mask, &r->chart, &opt->trace, outline));
     lap(r->seconds, JALI_STAGE_TRACE, &begun);
     if (opt->solid && opt->structure)

@@ -418,3 +418,24 @@ done:
     jali_elements_free(ctx, elements);
     return status;
 }
+
+jali_status jali_optimise_mend(jali_context *ctx, const jali_chart *chart, const jali_optimise_options *given,
+                               jali_bitmap *mask, jali_round *residual)
+{
+    jali_status status;
+    jali_optimised found = {0};
+    optimising o = {.chart = chart, .opt = given ? *given : jali_optimise_defaults(), .result = &found};
+    jali_elements *elements = NULL;
+    o.opt.details = false;
+    *residual = (jali_round){0};
+    TRY(prepare(ctx, &o));
+    TRY(jali_elements_create(ctx, &o.widths, mask->width_px, mask->height_px, &elements));
+    o.widths.elements = elements;
+    TRY(finish(ctx, &o, mask));
+    TRY(count_residual(ctx, &o, mask));
+    *residual = found.residual;
+done:
+    jali_optimised_free(ctx, &found);
+    jali_elements_free(ctx, elements);
+    return status;
+}

@@ -29,6 +29,7 @@
 #include <jali/map.h>
 #include <jali/mesh.h>
 #include <jali/model.h>
+#include <jali/nudge.h>
 #include <jali/optimise.h>
 #include <jali/place.h>
 #include <jali/png.h>
@@ -54,6 +55,7 @@ enum {
     JALI_STAGE_THRESHOLD,
     JALI_STAGE_PLACE,
     JALI_STAGE_OPTIMISE,
+    JALI_STAGE_NUDGE,
     JALI_STAGE_PREDICT,
     JALI_STAGE_TRACE,
     JALI_STAGE_STRENGTHEN,
@@ -68,6 +70,8 @@ typedef struct jali_options {
     jali_place_options place; // size, working pixel, frame
     jali_printer printer;     // when it has a name, its figures are those of the whole run. Default: none
     jali_optimise_options optimise; // its phi_e, phi_s, phi_v and paper count for place and predict as well
+    int32_t nudge_rounds; // move the mask's edges until the print comes nearest to the picture (jali_nudge),
+                          // at most so many rounds; 0 (default) = not
     jali_trace_options trace;
     jali_carve_options carve;
     int32_t repeat;    // so many copies of the picture side by side, each of place's size, 1 .. 1000; 0 = 1
@@ -93,6 +97,7 @@ typedef struct jali_result {
     double wall_mm;           // on a surface: the thinnest wall under the picture, between the skins at its
                               // vertices; less than phi_s is not printable
     jali_optimised optimised; // the mask and how it came about
+    jali_nudge_report nudge;  // when asked for
     // What comes out of the printer, when predicted: of the input as it is, connected only, and of the
     // result.
     jali_prediction input_print, connected_print, result_print;

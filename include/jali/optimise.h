@@ -72,6 +72,16 @@ JALI_API jali_status jali_optimise_add(jali_context *ctx, const jali_bridges *br
                                        const jali_chart *chart, const jali_optimise_options *opt,
                                        jali_optimised *result);
 
+/// Mend a mask that something else has drawn, by the finish's rules: thin solid is taken off, pieces are
+/// joined as wide as the printer needs, voids that are too narrow are filled.
+///   in     opt       as jali_optimise
+///   inout  mask
+///   out    residual  details left: types A and B are zero
+///   fails  as jali_optimise; the mask is then in between
+JALI_API jali_status jali_optimise_mend(jali_context *ctx, const jali_chart *chart,
+                                        const jali_optimise_options *opt, jali_bitmap *mask,
+                                        jali_round *residual);
+
 #ifdef __cplusplus
 }
 #endif
