@@ -169,7 +169,8 @@ jali_status apply_profile(jali_context *ctx, json_t *ours, const char *name, jal
 {
     const char *key;
     json_t *value;
-    *printer->name = *printer->what = 0; // nobody inherits these
+    memset(printer->name, 0, sizeof printer->name); // nobody inherits these
+    memset(printer->what, 0, sizeof printer->what);
     json_object_foreach(ours, key, value)
     {
         jali_status status = apply_key(ctx, key, value, name, printer);

@@ -28,8 +28,9 @@ jali_status profile_in_our_form(jali_context *ctx, const jali_bytes *file, const
 /// (import.c)
 jali_status import_slicer(jali_context *ctx, const json_t *settings, const char *slicer, const char *name,
                           json_t **ours);
-/// "key = value" lines as an object of texts.
+/// "key = value" lines, or an Orca profile, as an object of texts.
 jali_status settings_of_ini(jali_context *ctx, const jali_bytes *file, const char *name, json_t **settings);
+jali_status settings_of_orca(jali_context *ctx, const json_t *profile, json_t **settings);
 
 /// What an object in our form says goes into the printer; the rest of it stays.
 ///   fails  JALI_BAD_INPUT (which key, what is accepted)

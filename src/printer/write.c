@@ -7,26 +7,35 @@
 #include <jansson.h>
 #include <stdlib.h>
 
-// A text with its quotes and escapes.
-static jali_status append_text(jali_context *ctx, const char *text, jali_bytes *json)
+// Takes the value; NULL: it could not be made.
+static jali_status append_value(jali_context *ctx, json_t *value, jali_bytes *json)
 {
-    jali_status status;
-    json_t *value = json_string(text);
-    char *quoted = value ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
-    if (quoted)
-        status = bytes_append(ctx, json, quoted, strlen(quoted));
-    else
-        status = value ? fail(ctx, JALI_NO_MEMORY, "no memory for a printer profile")
-                       : fail(ctx, JALI_BAD_VALUE, "a text of the printer profile is no UTF-8");
-    free(quoted);
+    char *text = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17)) : NULL;
+    jali_status status = text ? bytes_append(ctx, json, text, strlen(text))
+                              : fail(ctx, JALI_NO_MEMORY, "no memory for a printer profile");
+    free(text);
     json_decref(value);
     return status;
 }
 
+// A text with its quotes and escapes.
+static jali_status append_text(jali_context *ctx, const char *text, jali_bytes *json)
+{
+    json_t *value = json_string(text);
+    if (!value) return fail(ctx, JALI_BAD_VALUE, "a text of the printer profile is no UTF-8");
+    return append_value(ctx, value, json);
+}
+
+// write_decimal takes what happens to be a float32 for one, and then its few digits need not be the double's.
 static jali_status append_number(jali_context *ctx, double value, jali_bytes *json)
 {
     char digits[DECIMAL_BYTES];
-    return bytes_append(ctx, json, digits, (size_t)write_decimal(digits, value));
+    const char *at = digits;
+    double back;
+    int length = write_decimal(digits, value);
+    if (!read_decimal(&at, digits + length, &back) || back != value)
+        return append_value(ctx, json_real(value), json);
+    return bytes_append(ctx, json, digits, (size_t)length);
 }
 
 // `,` and a key on a line of its own.
