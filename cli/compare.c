@@ -52,11 +52,24 @@ static jali_status check_witness(jali_context *ctx, const settings *set)
                 count == 0 ? "there is no print" : "there are several prints");
 }
 
+static jali_status compare_scan(jali_context *ctx, const settings *set, const jali_reference *reference,
+                                const jali_compare_options *opt, jali_comparison *c)
+{
+    jali_status status;
+    jali_picture scan = {0};
+    TRY(jali_read(ctx, set->scan, NULL, &scan));
+    TRY(jali_compare_scan(ctx, reference, &scan, opt, c));
+done:
+    jali_picture_free(ctx, &scan);
+    return status;
+}
+
 static jali_status compare_witness(jali_context *ctx, const settings *set, const jali_reference *reference,
                                    const jali_compare_options *opt, jali_print *print, jali_comparison *c)
 {
     jali_status status;
     jali_print_options how = set->print;
+    if (set->scan) return compare_scan(ctx, set, reference, opt, c);
     if (set->gcode) how.pixel_mm = opt->picture_mm[0] / reference->picture.width_px; // grids that meet
     TRY(set->gcode ? jali_print_gcode(ctx, set->gcode, &how, print)
                    : jali_print_sl1(ctx, set->sl1, &how, print));

@@ -141,6 +141,8 @@ static const option options[] = {
     {"sl1", "FILE", TEXT, GROUP_WITNESS, FIELD(sl1), 0, 0, 0, "the print is what the layers of this SL1 file expose"},
     {"sl1-pixel", "MM", NUMBER, GROUP_WITNESS, FIELD(print.pixel_mm), 0.001, 1, "mm",
      "side of a pixel of those layers where the file does not say"},
+    {"scan", "FILE", TEXT, GROUP_WITNESS, FIELD(scan), 0, 0, 0,
+     "the print is what this scan or photograph shows: the whole plate and a little around it"},
 
     {"render", "FILE", TEXT, GROUP_RENDER, FIELD(render), 0, 0, 0, "draw the object as a PNG"},
     {"lamp", NULL, FLAG, GROUP_VIEW, FIELD(view.lamp), 0, 0, 0, "draw it at night, with a lamp inside"},

@@ -88,6 +88,18 @@ JALI_API void jali_comparison_free(jali_context *ctx, jali_comparison *compariso
 JALI_API jali_status jali_compare(jali_context *ctx, const jali_reference *reference, const jali_print *print,
                                   const jali_compare_options *opt, jali_comparison *comparison);
 
+/// The same with a scan or photograph of the printed plate: found in it at any size, turn and tilt, from
+/// either side, light on dark or dark on light, under uneven light.
+///   in     scan   grey levels; the plate's frame and a little around it should be seen
+///   out    comparison   quarter_turns and mirrored say how it lay, nearly; shift_mm is 0
+///   fails  JALI_NO_RESULT (the plate is not found, part of it is not seen, or a pixel is wider than a third
+///   of
+///          phi_s; the message says what would do), and as jali_compare
+///   cost   about three seconds, and 28 bytes a pixel of the scan's part that shows the plate
+JALI_API jali_status jali_compare_scan(jali_context *ctx, const jali_reference *reference,
+                                       const jali_picture *scan, const jali_compare_options *opt,
+                                       jali_comparison *comparison);
+
 #ifdef __cplusplus
 }
 #endif
