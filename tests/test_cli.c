@@ -261,6 +261,26 @@ static void write_sample(void)
     if (access("rings.png", F_OK) != 0) run("sample rings -o rings.png --size 300", 0, "");
 }
 
+// A printer's file counts from the job's folder, a picture's own figures before it.
+TEST(pictures_of_a_job_have_printers)
+{
+    char json[TEXT_BYTES];
+    const char *own = "{\"jali_printer\": 1, \"name\": \"of the job\", \"inherits\": \"lite600\"}";
+    const char *text =
+        "{\"version\": 1, \"surface\": \"cylinder:r=30,h=80\", \"pictures\": ["
+        "{\"picture\": \"../two.pbm\", \"width\": 30, \"printer\": \"own.json\", \"phi-v\": 0.7},"
+        "{\"picture\": \"../two.pbm\", \"width\": 30, \"at\": [0, 30, 40]}]}";
+    CHECK_INT(mkdir("sub", 0700), 0);
+    write_text("sub/own.json", own, strlen(own));
+    write_text("sub/job.json", text, strlen(text));
+    run("carve --job sub/job.json --printer form1+ -o printers.stl --json printers.json", 0, "");
+    read_text("printers.json", json);
+    const char *first = strstr(json, "\"of the job\""), *pictures = strstr(json, "\"pictures\"");
+    CHECK(first && strstr(first, "\"phi_s_mm\": 0.25") && strstr(first, "\"phi_v_mm\": 0.7"));
+    CHECK(pictures && strstr(pictures, "\"form1+\"") && strstr(pictures, "\"phi_s_mm\": 0.3"));
+    unlink("printers.stl");
+}
+
 TEST(pictures_are_carved_through_a_surface)
 {
     write_sample();
@@ -561,6 +581,7 @@ int main(void)
         cmocka_unit_test(predict_says_what_a_printer_would_make_of_a_picture),
         cmocka_unit_test(bad_pictures_are_rejected),
         cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),
+        cmocka_unit_test(pictures_of_a_job_have_printers),
         cmocka_unit_test(pictures_are_carved_through_a_surface),
         cmocka_unit_test(a_picture_is_carved),
         cmocka_unit_test(a_picture_is_made_strong),

@@ -3,12 +3,16 @@
 #include "testing.h"
 
 #include <jali/predict.h>
+#include <jali/sample.h>
+#include "raster/raster.h"
 
 #include <math.h>
 
 // Masks are drawn on the fine grid, 0.025 mm a pixel, in a margin of MARGIN pixels.
 enum { PICTURE = 100, FINE = 4 * PICTURE, MARGIN = 40, SIDE = FINE + 2 * MARGIN };
 static const double FINE_MM = 0.025;
+
+static const uint64_t GOLDEN = UINT64_C(0xc1fab4cd3bb3cee3); // of a print by all figures
 
 // 16 and 24 fine pixels are the narrowest, edges stay where they are.
 static jali_predict_options plain_printer(void)
@@ -123,6 +127,23 @@ TEST(narrow_voids_have_a_growth_of_their_own)
                 CHECK_INT(across(&opt, slot, size, true), FINE - (size - (size < 80 ? void_px : solid_px)));
             }
         }
+}
+
+// A wide void has corners into which the disc of narrow voids does not fit: they are not narrow all the same.
+TEST(corners_of_wide_voids_are_not_narrow)
+{
+    jali_predict_options opt = plain_printer();
+    jali_bitmap mask = drawn_by(square, 200);
+    invert(ctx, &mask, &mask);
+    opt.phi_e_solid_mm = 0.1;
+    opt.phi_e_void_mm = 0.1;
+    jali_bitmap plain = printed(&opt, &mask, true);
+    opt.phi_e_void_mm = -0.3;
+    jali_bitmap same = printed(&opt, &mask, true);
+    CHECK(same_bitmap(&plain, &same));
+    jali_bitmap_free(ctx, &plain);
+    jali_bitmap_free(ctx, &same);
+    jali_bitmap_free(ctx, &mask);
 }
 
 // A disc's area tells its diameter to a tenth of a pixel.
@@ -306,6 +327,27 @@ TEST(threads_do_not_change_a_print_of_all_figures)
     jali_bitmap_free(ctx, &mask);
 }
 
+// A sample printed with every figure, as it was found right by looking at it.
+TEST(a_sample_gives_the_golden_print)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+    jali_bitmap sample, mask;
+    jali_predict_options opt = everything();
+    CHECK_OK(jali_sample(ctx, "girih", FINE, &sample));
+    CHECK_OK(jali_bitmap_create(ctx, SIDE, SIDE, &mask));
+    fill(ctx, &mask, true);
+    paste(&sample, MARGIN, MARGIN, &mask);
+    jali_bitmap print = printed(&opt, &mask, true);
+    for (int32_t y = 0; y < FINE; y++)
+        for (int32_t x = 0; x < FINE; x++)
+            hash = (hash ^ jali_bitmap_get(&print, x, y)) * UINT64_C(1099511628211);
+    if (hash != GOLDEN) print_error("UINT64_C(0x%016llx)\n", (unsigned long long)hash);
+    CHECK(hash == GOLDEN);
+    jali_bitmap_free(ctx, &print);
+    jali_bitmap_free(ctx, &sample);
+    jali_bitmap_free(ctx, &mask);
+}
+
 static jali_status print_everything(jali_context *limited, void *mask)
 {
     jali_predict_options opt = everything();
@@ -358,6 +400,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_kerf_takes_from_solids_and_gives_to_voids),
         cmocka_unit_test(narrow_voids_have_a_growth_of_their_own),
+        cmocka_unit_test(corners_of_wide_voids_are_not_narrow),
         cmocka_unit_test(round_holes_shrink_the_more_the_smaller_they_are),
         cmocka_unit_test(corners_come_out_as_round_as_stated),
         cmocka_unit_test(rounding_leaves_thin_features),
@@ -365,6 +408,7 @@ int main(void)
         cmocka_unit_test(more_growth_is_more_solid),
         cmocka_unit_test(on_a_stretched_surface_holes_are_those_that_are_round_there),
         cmocka_unit_test(threads_do_not_change_a_print_of_all_figures),
+        cmocka_unit_test(a_sample_gives_the_golden_print),
         cmocka_unit_test(every_allocation_refused_once),
         cmocka_unit_test(bad_figures_are_a_sentence),
         cmocka_unit_test(a_profile_says_all_of_it),

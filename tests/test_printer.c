@@ -2,8 +2,10 @@
 #include "testing.h"
 #include "base/bytes.h"
 #include "base/file.h"
+#include "printer/figures.h"
 
 #include <jali/printer.h>
+#include <jansson.h>
 #include <math.h>
 #include <unistd.h>
 
@@ -173,6 +175,30 @@ TEST(built_in_profiles_are_whole)
     }
 }
 
+// The schema for editors accepts the keys that the reader takes, in the same ranges, and no other.
+TEST(the_schema_says_what_the_reader_takes)
+{
+    int32_t counts[2];
+    const figure_key *keys[2] = {figure_keys(&counts[0]), material_keys(&counts[1])};
+    json_error_t error;
+    if (!getenv("JALI_SCHEMA")) return; // not started by ctest
+    json_t *schema = json_load_file(getenv("JALI_SCHEMA"), 0, &error);
+    json_t *properties[2] = {json_object_get(schema, "properties"), NULL};
+    json_t *of_material = json_object_get(properties[0], "material");
+    properties[1] = json_object_get(json_array_get(json_object_get(of_material, "oneOf"), 1), "properties");
+    CHECK_INT(json_object_size(properties[0]), (size_t)counts[0] + 7); // kind, name, what, inherits, ...
+    CHECK_INT(json_object_size(properties[1]), (size_t)counts[1] + 1); // name
+    for (int32_t list = 0; list < 2; list++)
+        for (int32_t i = 0; i < counts[list]; i++) {
+            const figure_key *k = &keys[list][i];
+            json_t *number =
+                json_array_get(json_object_get(json_object_get(properties[list], k->key), "oneOf"), 0);
+            CHECK(json_number_value(json_object_get(number, "minimum")) == k->least);
+            CHECK(json_number_value(json_object_get(number, "maximum")) == k->most);
+        }
+    json_decref(schema);
+}
+
 TEST(the_papers_printers)
 {
     static const struct {
@@ -336,6 +362,7 @@ int main(void)
         cmocka_unit_test(circles_and_long_chains_end),
         cmocka_unit_test(unknown_names_get_the_nearest),
         cmocka_unit_test(built_in_profiles_are_whole),
+        cmocka_unit_test(the_schema_says_what_the_reader_takes),
         cmocka_unit_test(the_papers_printers),
         cmocka_unit_test(a_prusaslicer_configuration),
         cmocka_unit_test(a_prusaslicer_configuration_of_a_resin_printer),

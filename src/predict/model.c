@@ -18,15 +18,6 @@
 
 static const double TOLERANCE_PX = 1e-9; // phi / pixel is often a whole number that floating point misses
 
-// Narrow is a void that a disc of so many phi_v does not fit into.
-static const double NARROW_PHI_V = 4;
-
-// An element has at most 4096 px.
-static const double LARGEST_DISC_PX = 4000;
-
-// How finely a narrow void is told from a wide one.
-static const double COARSE_DISC_PX = 24;
-
 // --- Discs
 
 double whole_px(const printing *p, double mm)
@@ -82,36 +73,6 @@ done:
 }
 
 // --- Growth
-
-// Where voids are narrow, with the edges beside them as far as any edge moves. Flat pictures are looked at on
-// a coarser grid, on which the disc still spans COARSE_DISC_PX: how wide a narrow void is at most is no sharp
-// figure.
-static jali_status narrow_places(jali_context *ctx, printing *p, int32_t reach_px, jali_bitmap *narrow)
-{
-    jali_status status;
-    field disc = {0};
-    jali_bitmap solid = {0}, closed = {0}, scratch = {0};
-    double narrow_mm = p->opt->narrow_mm > 0 ? p->opt->narrow_mm : NARROW_PHI_V * p->opt->phi_v_mm;
-    double narrow_px = fmin(whole_px(p, narrow_mm), LARGEST_DISC_PX);
-    int32_t times = is_flat(p->tiles) ? (int32_t)fmax(1, narrow_px / COARSE_DISC_PX) : 1;
-    int32_t width = p->solid->width_px, height = p->solid->height_px;
-    TRY(jali_bitmap_create(ctx, (width - 1) / times + 1, (height - 1) / times + 1, &solid));
-    TRY(jali_bitmap_create(ctx, solid.width_px, solid.height_px, &closed));
-    TRY(jali_bitmap_create(ctx, solid.width_px, solid.height_px, &scratch));
-    TRY(jali_bitmap_create(ctx, width, height, narrow));
-    resize_nearest(ctx, p->solid, 0, 0, width, height, &solid);
-    TRY(field_of_discs(ctx, p->tiles, floor(narrow_px / times), 0, false, true, &disc));
-    TRY(field_close(ctx, &solid, &disc, p->outside, &scratch, &closed));
-    combine(ctx, RULE_AND_NOT, &closed, &solid, &closed);
-    resize_nearest(ctx, &closed, 0, 0, closed.width_px, closed.height_px, &p->scratch);
-    TRY(move_edges(ctx, p, &p->scratch, reach_px + times - 1, false, narrow));
-done:
-    field_free(ctx, &disc);
-    jali_bitmap_free(ctx, &solid);
-    jali_bitmap_free(ctx, &closed);
-    jali_bitmap_free(ctx, &scratch);
-    return status;
-}
 
 static jali_status grow(jali_context *ctx, printing *p)
 {

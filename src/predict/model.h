@@ -26,6 +26,9 @@ jali_status move_edges(jali_context *ctx, const printing *p, const jali_bitmap *
                        jali_bitmap *to);
 void swap_bitmaps(jali_bitmap *a, jali_bitmap *b);
 
+/// Where voids are narrow, with the edges beside them as far as any edge moves, reach_px; a new bitmap.
+/// (narrow.c)
+jali_status narrow_places(jali_context *ctx, printing *p, int32_t reach_px, jali_bitmap *narrow);
 /// Round holes shrink by hole_mm2 over their diameter. (holes.c)
 jali_status narrow_holes(jali_context *ctx, printing *p);
 /// Corners of both tones come out with a radius of corner_mm at most. (corners.c)
