@@ -156,6 +156,17 @@ static double hole_mm(const jali_predict_options *opt, double size_px)
     return 2 * sqrt(area / M_PI) * FINE_MM;
 }
 
+// Narrow is what was drawn narrow, not what the rim of a hole leaves of it.
+TEST(a_small_hole_is_a_narrow_void_as_well)
+{
+    jali_predict_options opt = plain_printer();
+    opt.phi_e_solid_mm = 0.1;
+    opt.phi_e_void_mm = -0.2;
+    opt.hole_mm2 = 0.2; // 0.29 mm of 0.7
+    CHECK(fabs(hole_mm(&opt, 0.7 / FINE_MM) - (0.7 - 0.2 / 0.7 + 0.2)) <= 0.08);
+    CHECK(fabs(hole_mm(&opt, 5 / FINE_MM) - (5 - 0.2 / 5 - 0.1)) <= 0.08); // a wide one grows as solids do
+}
+
 TEST(round_holes_shrink_the_more_the_smaller_they_are)
 {
     jali_predict_options opt = plain_printer();
@@ -401,6 +412,7 @@ int main(void)
         cmocka_unit_test(a_kerf_takes_from_solids_and_gives_to_voids),
         cmocka_unit_test(narrow_voids_have_a_growth_of_their_own),
         cmocka_unit_test(corners_of_wide_voids_are_not_narrow),
+        cmocka_unit_test(a_small_hole_is_a_narrow_void_as_well),
         cmocka_unit_test(round_holes_shrink_the_more_the_smaller_they_are),
         cmocka_unit_test(corners_come_out_as_round_as_stated),
         cmocka_unit_test(rounding_leaves_thin_features),

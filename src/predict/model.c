@@ -74,26 +74,29 @@ done:
 
 // --- Growth
 
-static jali_status grow(jali_context *ctx, printing *p)
+static bool growths_differ(const printing *p)
+{
+    return p->opt->phi_e_solid_mm != p->opt->phi_e_void_mm;
+}
+
+//   in   narrow   where voids are, when the growths differ
+static jali_status grow(jali_context *ctx, printing *p, const jali_bitmap *narrow)
 {
     jali_status status;
-    jali_bitmap narrow = {0}, by_void = {0};
+    jali_bitmap by_void = {0};
     double of_solid = p->opt->phi_e_solid_mm, of_void = p->opt->phi_e_void_mm;
-    int32_t solid_px = edge_px(p, of_solid), void_px = edge_px(p, of_void);
-    if (of_solid != of_void) {
-        TRY(narrow_places(ctx, p, MAX(solid_px, void_px), &narrow));
+    if (growths_differ(p)) {
         TRY(jali_bitmap_create(ctx, p->solid->width_px, p->solid->height_px, &by_void));
-        TRY(move_edges(ctx, p, p->solid, void_px, of_void < 0, &by_void));
+        TRY(move_edges(ctx, p, p->solid, edge_px(p, of_void), of_void < 0, &by_void));
     }
-    TRY(move_edges(ctx, p, p->solid, solid_px, of_solid < 0, &p->scratch));
+    TRY(move_edges(ctx, p, p->solid, edge_px(p, of_solid), of_solid < 0, &p->scratch));
     swap_bitmaps(p->solid, &p->scratch);
-    if (of_solid != of_void) { // solid = narrow ? by_void : solid
-        combine(ctx, RULE_AND, &by_void, &narrow, &by_void);
-        combine(ctx, RULE_AND_NOT, p->solid, &narrow, p->solid);
+    if (growths_differ(p)) { // solid = narrow ? by_void : solid
+        combine(ctx, RULE_AND, &by_void, narrow, &by_void);
+        combine(ctx, RULE_AND_NOT, p->solid, narrow, p->solid);
         combine(ctx, RULE_OR, p->solid, &by_void, p->solid);
     }
 done:
-    jali_bitmap_free(ctx, &narrow);
     jali_bitmap_free(ctx, &by_void);
     return status;
 }
@@ -114,13 +117,18 @@ jali_status print_mask(jali_context *ctx, const jali_predict_options *opt, const
 {
     jali_status status;
     printing p = {.opt = opt, .tiles = tiles, .pixel_mm = pixel_mm, .outside = outside, .solid = mask};
+    jali_bitmap narrow = {0};
     TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, &p.scratch));
     TRY(lay_down(ctx, &p, laid));
+    if (growths_differ(&p))
+        TRY(narrow_places(ctx, &p, edge_px(&p, fmax(fabs(opt->phi_e_solid_mm), fabs(opt->phi_e_void_mm))),
+                          &narrow));
     if (opt->hole_mm2 > 0) TRY(narrow_holes(ctx, &p));
-    TRY(grow(ctx, &p));
+    TRY(grow(ctx, &p, &narrow));
     TRY(wear_laid(ctx, &p, laid));
     if (opt->corner_mm > 0) TRY(round_corners(ctx, &p));
 done:
     jali_bitmap_free(ctx, &p.scratch);
+    jali_bitmap_free(ctx, &narrow);
     return status;
 }
