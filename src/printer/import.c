@@ -27,40 +27,53 @@ typedef struct foreign {
 
 // --- Files as texts by key
 
+/// Some characters of a file.
+typedef struct stretch {
+    const char *first, *end;
+} stretch;
+
 static bool is_space(char c)
 {
     return c == ' ' || c == '\t' || c == '\r';
 }
 
-// `key = value`, also behind the `;` of a comment in G-code. False when the line says nothing of the kind.
-static bool split_line(const char *line, const char *end, const char *key[2], const char *value[2])
+static stretch trimmed(stretch s)
 {
-    while (line < end && (is_space(*line) || *line == ';')) line++;
-    const char *equals = memchr(line, '=', (size_t)(end - line));
+    while (s.first < s.end && is_space(*s.first)) s.first++;
+    while (s.first < s.end && is_space(*(s.end - 1))) s.end--;
+    return s;
+}
+
+// `key = value`, also behind the `;` of a comment in G-code. False when the line says nothing of the kind.
+static bool split_line(stretch line, stretch *key, stretch *value)
+{
+    line = trimmed(line);
+    while (line.first < line.end && *line.first == ';') line.first++;
+    const char *equals = memchr(line.first, '=', (size_t)(line.end - line.first));
     if (!equals) return false;
-    key[0] = line;
-    for (key[1] = equals; key[1] > key[0] && is_space(key[1][-1]); key[1]--) {
-    }
-    for (value[0] = equals + 1; value[0] < end && is_space(*value[0]); value[0]++) {
-    }
-    for (value[1] = end; value[1] > value[0] && is_space(value[1][-1]); value[1]--) {
-    }
-    for (const char *c = key[0]; c < key[1]; c++)
+    *key = trimmed((stretch){line.first, equals});
+    *value = trimmed((stretch){equals + 1, line.end});
+    for (const char *c = key->first; c < key->end; c++)
         if (!isalnum((unsigned char)*c) && *c != '_') return false;
-    return key[1] > key[0] && key[1] - key[0] < JALI_NAME_BYTES;
+    return key->end > key->first && key->end - key->first < JALI_NAME_BYTES;
+}
+
+static bool begins_section(stretch line)
+{
+    return line.end - line.first > 1 && *line.first == '[' && isalpha((unsigned char)line.first[1]);
 }
 
 jali_status settings_of_ini(jali_context *ctx, const jali_bytes *file, const char *name, json_t **settings)
 {
     char key_text[JALI_NAME_BYTES];
     const char *at = file->size > 0 ? (const char *)file->data : "", *end = at + file->size;
-    const char *key[2], *value[2];
+    stretch key, value;
     *settings = json_object();
-    for (const char *next; at < end; at = next) {
+    while (at < end) {
         const char *line_end = memchr(at, '\n', (size_t)(end - at));
-        if (!line_end) line_end = end;
-        next = line_end < end ? line_end + 1 : end;
-        if (*at == '[' && line_end - at > 1 && isalpha((unsigned char)at[1])) {
+        stretch line = {at, line_end ? line_end : end};
+        at = line_end ? line_end + 1 : end;
+        if (begins_section(line)) {
             json_decref(*settings);
             *settings = NULL;
             return fail(ctx, JALI_BAD_INPUT,
@@ -69,9 +82,9 @@ jali_status settings_of_ini(jali_context *ctx, const jali_bytes *file, const cha
                         "Export, Export Config)",
                         name);
         }
-        if (!split_line(at, line_end, key, value)) continue;
-        snprintf(key_text, sizeof key_text, "%.*s", (int)(key[1] - key[0]), key[0]);
-        json_t *text = json_stringn(value[0], (size_t)(value[1] - value[0])); // NULL when no UTF-8
+        if (!split_line(line, &key, &value)) continue;
+        snprintf(key_text, sizeof key_text, "%.*s", (int)(key.end - key.first), key.first);
+        json_t *text = json_stringn(value.first, (size_t)(value.end - value.first)); // NULL when no UTF-8
         if (text) json_object_set_new(*settings, key_text, text);
     }
     return *settings ? JALI_OK : fail(ctx, JALI_NO_MEMORY, "no memory for a printer profile");
