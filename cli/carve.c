@@ -122,6 +122,9 @@ static void tell_picture(const settings *set, const jali_picture *picture, const
         say(set, "predicted print: %.2f %% of it wrong (%.2f %% when only connected), %d piece%s",
             100 * r->result_print.error_rate, 100 * r->connected_print.error_rate, r->result_print.pieces,
             r->result_print.pieces == 1 ? "" : "s");
+    if (set->make.structure && set->make.optimise.phi_e_mm < 0)
+        say(set, "the load is borne by bars as they are drawn; the kerf leaves them %g mm narrower",
+            -set->make.optimise.phi_e_mm);
     tell_structure(set, &r->strength);
 }
 

@@ -187,6 +187,9 @@ TEST(predict_says_what_a_printer_would_make_of_a_picture)
     CHECK(strstr(json, "\"name\": \"hori-z500\"") && access("map.png", F_OK) == 0);
     run("predict rings.png --width 40 -o map.png", 2, "exists");
     run("predict rings.png --printer laser-acrylic --phi-e -1", 0, "would come out wrong");
+    run("carve rings.png -o cut.stl --printer laser-acrylic --width 120 --force 1", 0,
+        "the kerf leaves them 0.2 mm");
+    unlink("cut.stl");
     run("predict rings.png -o map.svg", 2, "does not write this type");
     unlink("map.png");
     unlink("rings.png");
