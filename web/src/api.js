@@ -1,0 +1,70 @@
+// The server's HTTP interface (docs/serve.md), and nothing else of it.
+
+const BASE = "/api/v1";
+const token = takeToken();
+
+// The token comes in the address once; it is kept for this tab and taken out of the address.
+function takeToken() {
+    const given = new URLSearchParams(location.hash.slice(1)).get("token");
+    if (given) {
+        sessionStorage.setItem("jali-token", given);
+        const rest = new URLSearchParams(location.hash.slice(1));
+        rest.delete("token");
+        history.replaceState(null, "", `${location.pathname}#${rest}`);
+    }
+    return given ?? sessionStorage.getItem("jali-token") ?? "";
+}
+
+/** What the server refused, with its own sentence. */
+export class Refusal extends Error {}
+
+async function call(path, options = {}) {
+    const response = await fetch(BASE + path, {
+        ...options,
+        headers: { ...options.headers, "X-Jali-Token": token },
+    });
+    if (response.ok) return response;
+    const answer = await response.json().catch(() => ({}));
+    throw new Refusal(answer.error ?? `${response.status} ${response.statusText}`);
+}
+
+export const lists = () => call("/lists").then((r) => r.json());
+export const sample = (name) => call(`/samples/${encodeURIComponent(name)}.png`).then((r) => r.blob());
+
+export async function upload(blob, name, signal) {
+    const query = new URLSearchParams({ name });
+    const response = await call(`/uploads?${query}`, {
+        method: "POST", body: blob, signal, headers: { "Content-Type": "application/octet-stream" },
+    });
+    return (await response.json()).id;
+}
+
+export async function start(request, signal) {
+    const response = await call("/jobs", {
+        method: "POST", body: JSON.stringify(request), signal, headers: { "Content-Type": "application/json" },
+    });
+    return (await response.json()).id;
+}
+
+export const stop = (id) => call(`/jobs/${id}`, { method: "DELETE" }).catch(() => {});
+export const file = (id, name, signal) => call(`/jobs/${id}/files/${name}`, { signal });
+
+/** Read a job's server-sent events until it ends; EventSource could not carry the token. */
+export async function* events(id, signal) {
+    const response = await call(`/jobs/${id}/events`, { signal });
+    const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+    let held = "";
+    for (;;) {
+        const { value, done } = await reader.read();
+        if (done) return;
+        held += value;
+        for (let end; (end = held.indexOf("\n\n")) >= 0; held = held.slice(end + 2)) {
+            const event = { type: "message", data: "" };
+            for (const line of held.slice(0, end).split("\n")) {
+                if (line.startsWith("event:")) event.type = line.slice(6).trim();
+                if (line.startsWith("data:")) event.data += line.slice(5).trim();
+            }
+            if (event.data) yield { type: event.type, ...JSON.parse(event.data) };
+        }
+    }
+}

@@ -1,0 +1,180 @@
+// Before and after on one canvas, with a handle between them, overlays, zoom and pan.
+
+import { make } from "./dom.js";
+import { text } from "./strings.js";
+
+const SOLID = [239, 233, 223], VOID = [39, 38, 44], MISSING = [214, 69, 48], EXCESS = [250, 204, 40],
+    ADDED = [42, 120, 180], OPENED = [200, 90, 160];
+const MOST_PX = 1600; // longer side of what is composed; the carving itself is finer
+
+const bits = (bitmap, width, height) => {
+    const canvas = new OffscreenCanvas(width, height);
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    context.imageSmoothingEnabled = bitmap.width > width;
+    context.drawImage(bitmap, 0, 0, width, height);
+    return context.getImageData(0, 0, width, height);
+};
+
+// A coloured picture from one or two that are black and white.
+function compose(width, height, colour) {
+    const canvas = new OffscreenCanvas(width, height);
+    const image = new ImageData(width, height);
+    for (let i = 0, p = 0; i < width * height; i++, p += 4) {
+        const [r, g, b] = colour(p);
+        image.data[p] = r;
+        image.data[p + 1] = g;
+        image.data[p + 2] = b;
+        image.data[p + 3] = 255;
+    }
+    canvas.getContext("2d").putImageData(image, 0, 0);
+    return canvas;
+}
+
+export class PictureView {
+    constructor(stage, legend) {
+        this.legend = legend;
+        this.split = 0.5;
+        this.overlay = "none";
+        this.layers = null; // input, mask, print as ImageData
+        this.view = { scale: 1, x: 0, y: 0 };
+        this.canvas = make("canvas", { class: "picture" });
+        this.handle = make("input", { type: "range", class: "handle", min: 0, max: 100, value: 50, step: 1, "aria-label": text("handle") });
+        this.chooser = make("select", { "aria-label": text("overlay"), class: "overlay" });
+        this.root = make("div", { class: "fill" }, this.canvas, this.handle, this.chooser);
+        stage.append(this.root);
+        this.listen();
+        new ResizeObserver(() => this.draw()).observe(stage);
+        this.words();
+    }
+
+    words() {
+        this.handle.setAttribute("aria-label", text("handle"));
+        this.chooser.setAttribute("aria-label", text("overlay"));
+        this.chooser.replaceChildren(...[["none", "overlayNone"], ["error", "overlayError"], ["change", "overlayBridge"]]
+            .map(([value, key]) => make("option", { value }, text(key))));
+        this.chooser.value = this.overlay;
+        this.showLegend();
+    }
+
+    listen() {
+        this.handle.addEventListener("input", () => this.setSplit(this.handle.value / 100));
+        this.handle.addEventListener("keydown", (event) => {
+            const place = { 1: 1, 2: 0.5, 3: 0 }[event.key];
+            if (place !== undefined) this.setSplit(place);
+        });
+        this.chooser.addEventListener("change", () => { this.overlay = this.chooser.value; this.paint(); });
+        this.canvas.addEventListener("wheel", (event) => {
+            event.preventDefault();
+            this.zoom(Math.exp(-event.deltaY * 0.0015), event.offsetX, event.offsetY);
+        }, { passive: false });
+        const held = new Map();
+        this.canvas.addEventListener("pointerdown", (event) => { this.canvas.setPointerCapture(event.pointerId); held.set(event.pointerId, event); });
+        this.canvas.addEventListener("pointermove", (event) => {
+            const last = held.get(event.pointerId);
+            if (!last) return;
+            this.drag(held, last, event);
+            held.set(event.pointerId, event);
+        });
+        for (const kind of ["pointerup", "pointercancel"]) this.canvas.addEventListener(kind, (event) => held.delete(event.pointerId));
+        this.canvas.addEventListener("dblclick", () => { this.view = { scale: 1, x: 0, y: 0 }; this.draw(); });
+    }
+
+    // One finger moves, two come nearer and move.
+    drag(held, last, now) {
+        if (held.size === 2) {
+            const other = [...held.values()].find((e) => e.pointerId !== now.pointerId);
+            const before = Math.hypot(last.offsetX - other.offsetX, last.offsetY - other.offsetY);
+            const after = Math.hypot(now.offsetX - other.offsetX, now.offsetY - other.offsetY);
+            if (before > 0) this.zoom(after / before, other.offsetX, other.offsetY);
+            return;
+        }
+        this.view.x += now.offsetX - last.offsetX;
+        this.view.y += now.offsetY - last.offsetY;
+        this.draw();
+    }
+
+    zoom(times, x, y) {
+        const scale = Math.min(Math.max(this.view.scale * times, 0.5), 40), real = scale / this.view.scale;
+        this.view = { scale, x: x - (x - this.view.x) * real, y: y - (y - this.view.y) * real };
+        this.draw();
+    }
+
+    setSplit(share) {
+        this.split = share;
+        this.handle.value = Math.round(share * 100);
+        this.draw();
+    }
+
+    /** Show a run's pictures: ImageBitmaps of the same area; print may be missing. */
+    show({ input, mask, print }) {
+        const shrink = Math.min(1, MOST_PX / Math.max(mask.width, mask.height));
+        const width = Math.max(1, Math.round(mask.width * shrink)), height = Math.max(1, Math.round(mask.height * shrink));
+        this.layers = { width, height, input: bits(input, width, height).data, mask: bits(mask, width, height).data,
+            print: print ? bits(print, width, height).data : null };
+        this.paint();
+    }
+
+    paint() {
+        if (!this.layers) return;
+        const { width, height, input, mask, print } = this.layers;
+        const plain = (data) => (p) => (data[p] > 127 ? SOLID : VOID);
+        const differ = (data, gone, come) => (p) => {
+            const was = input[p] > 127, is = data[p] > 127;
+            return was === is ? (is ? SOLID : VOID) : is ? come : gone;
+        };
+        const after = { none: plain(mask), error: differ(print ?? mask, MISSING, EXCESS), change: differ(mask, OPENED, ADDED) }[this.overlay];
+        this.before = compose(width, height, plain(input));
+        this.after = compose(width, height, after);
+        this.showLegend();
+        this.draw();
+    }
+
+    showLegend() {
+        const keys = { none: [], error: [["missing", MISSING], ["excess", EXCESS]], change: [["bridge", ADDED], ["opened", OPENED]] }[this.overlay];
+        this.legend.replaceChildren(...keys.map(([key, colour]) => {
+            const patch = make("span", { class: "patch", "aria-hidden": "true" });
+            patch.style.background = `rgb(${colour})`;
+            return make("span", { class: "key" }, patch, text(key));
+        }));
+    }
+
+    draw() {
+        const ratio = devicePixelRatio || 1, width = this.root.clientWidth, height = this.root.clientHeight;
+        if (width === 0 || height === 0) return;
+        this.canvas.width = width * ratio;
+        this.canvas.height = height * ratio;
+        if (!this.before) return;
+        const context = this.canvas.getContext("2d");
+        const fit = 0.94 * Math.min(width / this.before.width, height / this.before.height) * this.view.scale;
+        const left = (width - this.before.width * fit) / 2 * 1 + this.view.x, top = (height - this.before.height * fit) / 2 + this.view.y;
+        context.scale(ratio, ratio);
+        context.imageSmoothingEnabled = fit * ratio < 2;
+        const place = [left, top, this.before.width * fit, this.before.height * fit];
+        const edge = this.split * width;
+        for (const [picture, from, to] of [[this.before, 0, edge], [this.after, edge, width]]) {
+            context.save();
+            context.beginPath();
+            context.rect(from, 0, to - from, height);
+            context.clip();
+            context.drawImage(picture, ...place);
+            context.restore();
+        }
+        if (this.split > 0 && this.split < 1) this.drawHandle(context, edge, height);
+    }
+
+    drawHandle(context, x, height) {
+        context.fillStyle = "#a8542f";
+        context.fillRect(x - 1, 0, 2, height);
+        context.beginPath();
+        context.arc(x, height / 2, 15, 0, 2 * Math.PI);
+        context.fill();
+        context.fillStyle = "#fff";
+        for (const side of [-1, 1]) {
+            context.beginPath();
+            context.moveTo(x + side * 9, height / 2);
+            context.lineTo(x + side * 3.5, height / 2 - 5);
+            context.lineTo(x + side * 3.5, height / 2 + 5);
+            context.fill();
+        }
+    }
+}

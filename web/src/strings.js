@@ -1,0 +1,93 @@
+// Every word of the page, in each language. Keys are the same everywhere; a missing one falls back to English.
+
+const en = {
+    lead: "A picture, carved right through, ready to print.",
+    skip: "Skip to the picture",
+    undo: "Undo", redo: "Redo", copyCommand: "Copy command line", copied: "Copied",
+    language: "Language", controls: "What to make", stageName: "Preview", views: "View", results: "Result",
+    viewPicture: "Picture", viewSolid: "Object",
+    dropHere: "Let go to use this file",
+    picture: "Picture", choose: "Choose a picture", orDrop: "or drop or paste one anywhere", samples: "Samples",
+    threshold: "Threshold", auto: "automatic", invert: "Swap black and white", rotate: "Turn",
+    size: "Size and printer", width: "Width", frame: "Frame", thickness: "Thickness", printer: "Printer",
+    ownPrinter: "your own figures", phi_e: "Bars print wider by", phi_s: "Narrowest solid", phi_v: "Narrowest void",
+    nudge: "Fine-tune edges to the printer (slower)",
+    surface: "Surface", plate: "Plate", cylinder: "Cylinder", vase: "Vase", cone: "Cone", sphere: "Sphere",
+    model: "Your own model", chooseModel: "Choose a model (STL, OBJ, PLY, 3MF)", radius: "Radius", height: "Height",
+    strength: "Strength", force: "Force pressed on it", material: "Material",
+    before: "before", after: "after", handle: "Before and after: move with the arrow keys, 1 before, 2 both, 3 after",
+    overlay: "Show", overlayNone: "nothing more", overlayError: "what prints wrong", overlayBridge: "bridges and changes",
+    missing: "solid that is missing", excess: "solid that is too much", bridge: "made solid", opened: "made void",
+    waiting: "Choose a picture to begin.", uploading: "Reading the picture …", working: "Working: {stage}",
+    done: "Done in {seconds} s.", failed: "That did not work: {sentence}", cancelled: "Stopped.",
+    lost: "The connection to jali was lost. Is it still running?",
+    onePiece: "One piece", printable: "Printable", closed: "Closed solid", sound: "Strong enough",
+    kept: "yes", broken: "no", notAsked: "not asked",
+    onePieceWhy: "{pieces} pieces in the picture, {bridges} bridges laid",
+    printableWhy: "nothing thinner than {solid} mm, no void narrower than {hollow} mm",
+    closedWhy: "{triangles} triangles, watertight", soundWhy: "{stress} of {limit} MPa",
+    errorAsIs: "Printed as it is", errorConnected: "only connected", errorResult: "as carved here",
+    wrong: "{percent} % wrong", volume: "{volume} cm³, {weight} g", download: "Download",
+    report: "Report", stop: "Stop",
+    front: "Front", back: "Back", side: "Side", topView: "Top", light: "Light inside", solidBusy: "The object is being carved …",
+    solidHelp: "Drag to turn, wheel to come nearer, arrow keys turn too",
+    noWebgl: "This browser cannot draw the object: it has no WebGL.",
+    mm: "mm", newton: "N", times: "times",
+};
+
+const zh = {
+    lead: "把一张图片镂空雕穿，随时可以打印。",
+    skip: "跳到图片",
+    undo: "撤销", redo: "重做", copyCommand: "复制命令行", copied: "已复制",
+    language: "语言", controls: "要做什么", stageName: "预览", views: "视图", results: "结果",
+    viewPicture: "图片", viewSolid: "实物",
+    dropHere: "松开即可使用此文件",
+    picture: "图片", choose: "选择图片", orDrop: "也可以拖放或粘贴到任意位置", samples: "样例",
+    threshold: "阈值", auto: "自动", invert: "黑白互换", rotate: "旋转",
+    size: "尺寸与打印机", width: "宽度", frame: "边框", thickness: "厚度", printer: "打印机",
+    ownPrinter: "自己的数值", phi_e: "实条打印后变宽", phi_s: "最窄实体", phi_v: "最窄空隙",
+    nudge: "按打印机微调边缘（较慢）",
+    surface: "曲面", plate: "平板", cylinder: "圆柱", vase: "花瓶", cone: "圆锥", sphere: "球",
+    model: "自己的模型", chooseModel: "选择模型（STL、OBJ、PLY、3MF）", radius: "半径", height: "高度",
+    strength: "强度", force: "承受的压力", material: "材料",
+    before: "之前", after: "之后", handle: "前后对比：方向键移动，1 之前，2 两者，3 之后",
+    overlay: "显示", overlayNone: "不叠加", overlayError: "打印误差", overlayBridge: "连接与改动",
+    missing: "缺失的实体", excess: "多余的实体", bridge: "变为实体", opened: "变为空隙",
+    waiting: "请先选择一张图片。", uploading: "正在读取图片……", working: "处理中：{stage}",
+    done: "用时 {seconds} 秒。", failed: "没有成功：{sentence}", cancelled: "已停止。",
+    lost: "与 jali 的连接已断开。它还在运行吗？",
+    onePiece: "连成一体", printable: "可以打印", closed: "封闭实体", sound: "足够坚固",
+    kept: "是", broken: "否", notAsked: "未要求",
+    onePieceWhy: "图片中有 {pieces} 块，架了 {bridges} 座桥",
+    printableWhy: "实体不窄于 {solid} 毫米，空隙不窄于 {hollow} 毫米",
+    closedWhy: "{triangles} 个三角形，水密", soundWhy: "{stress} / {limit} MPa",
+    errorAsIs: "直接打印", errorConnected: "仅连接", errorResult: "本结果",
+    wrong: "{percent} % 有误", volume: "{volume} cm³，{weight} 克", download: "下载",
+    report: "报告", stop: "停止",
+    front: "正面", back: "背面", side: "侧面", topView: "俯视", light: "内部灯光", solidBusy: "正在雕刻实物……",
+    solidHelp: "拖动旋转，滚轮缩放，方向键也可旋转",
+    noWebgl: "此浏览器没有 WebGL，无法显示实物。",
+    mm: "毫米", newton: "牛", times: "倍",
+};
+
+const languages = { en, zh };
+let current = "en";
+
+export function setLanguage(name) {
+    current = languages[name] ? name : "en";
+    document.documentElement.lang = current === "zh" ? "zh-Hans" : "en";
+}
+
+export const language = () => current;
+
+/** The words of a key, with {name} replaced by values.name. */
+export function text(key, values = {}) {
+    const words = languages[current][key] ?? en[key] ?? key;
+    return words.replace(/\{(\w+)\}/g, (whole, name) => (name in values ? String(values[name]) : whole));
+}
+
+/** Fill in what index.html marks with data-text and data-label. */
+export function fillWords(root) {
+    for (const node of root.querySelectorAll("[data-text]")) node.textContent = text(node.dataset.text);
+    for (const node of root.querySelectorAll("[data-label]")) node.setAttribute("aria-label", text(node.dataset.label));
+}
