@@ -8,10 +8,9 @@
 //          print = solid grown by phi_e_solid / 2; where voids are narrow, by phi_e_void / 2
 //          print = its corners rounded to corner_mm, convex ones first, thin features left as they are
 //          Lengths that are 0 or equal leave their step out.
-// Discs:   A disc has whole diameter floor(phi / pixel), so that a bar of exactly phi prints wherever it
-// lies.
+// Discs:   A disc has whole diameter floor(phi / pixel): a bar of exactly phi prints wherever it lies.
 //          With a metric they are ellipses of the place, nowhere larger than the disc.
-// Checked: tests/test_predict.c on bars, holes and corners of known size.
+// Checked: tests/test_forward.c on bars, holes and corners of known size.
 #include "predict/model.h"
 
 #include <math.h>
