@@ -5,6 +5,7 @@
 #include <jali/board.h>
 #include <jali/bytes.h>
 #include <jali/printer.h>
+#include <jali/read.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -94,6 +95,63 @@ JALI_API jali_status jali_calibration_apply(jali_context *ctx, const jali_calibr
 /// What was found, in sentences, a line each; appended.
 JALI_API jali_status jali_calibration_sentences(jali_context *ctx, const jali_calibration *calibration,
                                                 jali_bytes *text);
+
+// --- From a scan
+
+typedef struct jali_scan_options {
+    const jali_board *board; // which board it is; NULL (default): its code says
+    double dpi; // pixels an inch; 0 (default): the board's own size is the scale, and a print that is
+                // smaller as a whole is not told from a scan that is
+} jali_scan_options;
+
+JALI_API jali_scan_options jali_scan_defaults(void);
+
+/// A feature as it was found.
+typedef struct jali_measured {
+    bool printed;
+    double width_mm;  // 0 when it did not print
+    double spread_mm; // standard deviation along it
+    double off_mm[2]; // from where it should be, on the board; bars: across alone
+} jali_measured;
+
+/// A scan that was understood. {0} is valid and empty.
+typedef struct jali_scan {
+    jali_board board;
+    jali_measured *feature; // [board.feature_count]
+    bool code_read;         // the board's code; false: the options' board was taken instead
+    bool mirrored, dark;    // seen from behind; voids are darker than the plate
+    double turn_deg;        // of the board's x axis, clockwise in the scan, -180 .. 180
+    double map[9];          // from the board's mm to the scan's px, homogeneous, row by row
+    double pixel_mm;        // a pixel of the scan on the board
+    double blur_mm;         // deviation of the blur at edges
+    double contrast;        // between the tones where it is least, 0 .. 1
+    double residual_mm;     // places of features against the map, standard deviation
+    double scale[2];        // printed over designed length along x and y; 1 without dpi
+    double corner_mm;       // radius of the windows' corners; 0: too small to tell
+    int32_t corners;        // from so many
+} jali_scan;
+
+JALI_API void jali_scan_free(jali_context *ctx, jali_scan *scan);
+
+/// Find the board in a scan or photograph and measure every feature: any turn, tilt and size, from either
+/// side, voids lighter or darker, under uneven light.
+///   in     opt   NULL means the defaults
+///   out    scan  free with jali_scan_free
+///   fails  JALI_NO_RESULT (no board, not all of it, its code cannot be read, too coarse, too blurred, too
+///   little
+///          contrast, bent: the sentence says how much and what is needed), JALI_NO_MEMORY, JALI_LIMIT,
+///          JALI_CANCELLED
+///   cost   under a second for 300 dpi
+JALI_API jali_status jali_scan_board(jali_context *ctx, const jali_picture *picture,
+                                     const jali_scan_options *opt, jali_scan *scan);
+
+/// The widths that were measured, for jali_calibrate; appended.
+JALI_API jali_status jali_scan_widths(jali_context *ctx, const jali_scan *scan, jali_widths *widths);
+
+/// A picture of it, as a PNG: the scan straightened, each feature's outline as designed (what did not print
+/// in red), its designed and its measured width.
+JALI_API jali_status jali_scan_map(jali_context *ctx, const jali_picture *picture, const jali_scan *scan,
+                                   jali_bytes *png);
 
 #ifdef __cplusplus
 }

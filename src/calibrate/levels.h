@@ -1,0 +1,25 @@
+// How light solid and void are, place by place. Internal to calibrate.
+#ifndef CALIBRATE_LEVELS_H
+#define CALIBRATE_LEVELS_H
+
+#include "calibrate/view.h"
+
+/// {0} is valid and empty.
+typedef struct levels {
+    int32_t columns, rows;
+    double step_mm;
+    double (*node)[2]; // [rows * columns] solid, void
+} levels;
+
+/// From places well within either tone, away from all that is measured: planes fitted to the neighbourhood of
+/// each node.
+///   in     margin_mm  so far from any edge
+///   fails  JALI_NO_RESULT (a part of the board is not in the picture), JALI_NO_MEMORY
+jali_status learn_levels(jali_context *ctx, const jali_picture *picture, const jali_board *board,
+                         const homography *map, double margin_mm, levels *l);
+void levels_free(jali_context *ctx, levels *l);
+
+/// Solid and void at a place of the board.
+void levels_at(const levels *l, double x_mm, double y_mm, double level[2]);
+
+#endif
