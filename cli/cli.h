@@ -41,8 +41,9 @@ typedef struct settings {
     jali_render_options view;      // of a render
     jali_board_options board;
     const char *measured;           // widths typed in
+    double dpi;                     // of a scan; 0 = not said
     bool skip_intersections, walls; // of check
-    const char *gcode, *sl1, *scan; // of compare: one of them
+    const char *gcode, *sl1, *scan; // of compare: one of them; calibrate has a scan, too
     jali_print_options print;       // likewise; its pixel 0 = as the archive says
     jali_context_options context;
     double max_memory_mb;

@@ -40,9 +40,9 @@ static const option options[] = {
      "what prints it: phi-e, phi-s, phi-v, material (\"jali list printers\"; a profile, a slicer's configuration)"},
     {"phi-e", "MM", NUMBER, GROUP_SIZE, FIELD(phi_given_mm[0]), -10, 100, "mm",
      "how much wider a solid bar prints than drawn; negative for a laser's kerf (the printer's; 0.1)"},
-    {"phi-s", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD, FIELD(phi_given_mm[1]), 0.001, 100, "mm",
+    {"phi-s", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD | GROUP_CALIBRATE, FIELD(phi_given_mm[1]), 0.001, 100, "mm",
      "narrowest solid that prints (the printer's; 0.3)"},
-    {"phi-v", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD, FIELD(phi_given_mm[2]), 0.001, 100, "mm",
+    {"phi-v", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD | GROUP_CALIBRATE, FIELD(phi_given_mm[2]), 0.001, 100, "mm",
      "narrowest void that prints (the printer's; 0.5)"},
     {"pixel", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD, FIELD(make.place.pixel_mm), 0.0001, 100, "mm",
      "working pixel (at least 8 a width, a whole number a phi-e / 2); of a board 0.05"},
@@ -111,8 +111,8 @@ static const option options[] = {
      "the largest stress to allow (the material's)"},
     {"across", "N", WHOLE, GROUP_LOAD, FIELD(make.strengthen.across), 1, 16, 0,
      "elements across the narrowest solid; 2 is a preview (4)"},
-    {"map", "FILE", TEXT, GROUP_LOAD, FIELD(map), 0, 0, 0,
-     "draw the stress: .png, .ply (coloured) or .vtu (ParaView)"},
+    {"map", "FILE", TEXT, GROUP_LOAD | GROUP_CALIBRATE, FIELD(map), 0, 0, 0,
+     "draw the stress: .png, .ply (coloured) or .vtu (ParaView); of calibrate: what was measured, .png"},
     {"displacement-map", "FILE", TEXT, GROUP_LOAD, FIELD(moved_map), 0, 0, 0,
      "draw how far it gives way, likewise"},
     {"solver", "direct|petsc", SOLVER, GROUP_SOLVER, 0, 0, 0, 0,
@@ -128,11 +128,14 @@ static const option options[] = {
     {"job", "FILE", TEXT, GROUP_JOB, FIELD(job), 0, 0, 0,
      "several pictures on one surface, as JSON, in place of PICTURE (docs/job.md)"},
 
-    {"within", "MM", NUMBER, GROUP_BOARD, FIELD(board.most_mm), 40, 200, "mm",
+    {"within", "MM", NUMBER, GROUP_BOARD | GROUP_CALIBRATE, FIELD(board.most_mm), 40, 200, "mm",
      "the longest side the board may have (200)"},
 
     {"measured", "LIST", TEXT, GROUP_CALIBRATE, FIELD(measured), 0, 0, 0,
      "widths instead of a table: KIND:DESIGNED=MEASURED,... such as solid:0.4=0.52,void:0.3=0"},
+
+    {"dpi", "N", NUMBER, GROUP_CALIBRATE, FIELD(dpi), 10, 20000, 0,
+     "the scan's pixels an inch: shrinkage counts as well (the board's own size is the scale)"},
 
     {"gcode", "FILE", TEXT, GROUP_WITNESS, FIELD(gcode), 0, 0, 0,
      "the print is what this G-code lays: its extrusions, with their widths"},
@@ -141,8 +144,8 @@ static const option options[] = {
     {"sl1", "FILE", TEXT, GROUP_WITNESS, FIELD(sl1), 0, 0, 0, "the print is what the layers of this SL1 file expose"},
     {"sl1-pixel", "MM", NUMBER, GROUP_WITNESS, FIELD(print.pixel_mm), 0.001, 1, "mm",
      "side of a pixel of those layers where the file does not say"},
-    {"scan", "FILE", TEXT, GROUP_WITNESS, FIELD(scan), 0, 0, 0,
-     "the print is what this scan or photograph shows: the whole plate and a little around it"},
+    {"scan", "FILE", TEXT, GROUP_WITNESS | GROUP_CALIBRATE, FIELD(scan), 0, 0, 0,
+     "the print, or the board, is what this scan or photograph shows: the whole plate and a little around it"},
 
     {"render", "FILE", TEXT, GROUP_RENDER, FIELD(render), 0, 0, 0, "draw the object as a PNG"},
     {"lamp", NULL, FLAG, GROUP_VIEW, FIELD(view.lamp), 0, 0, 0, "draw it at night, with a lamp inside"},
@@ -284,7 +287,7 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
     if (set->help) return true;
     if (set->job && set->operand)
         return wrong(sentence, "--job names the pictures; \"%.60s\" is one too many", set->operand);
-    if (v->operand && !set->operand && !set->job && !set->measured)
+    if (v->operand && !set->operand && !set->job && !set->measured && !(set->scan && v->groups & GROUP_CALIBRATE))
         return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
     if (*v->suffixes && !(v->groups & WRITES_NOTHING_TOO) && set->output_count == 0)
         return wrong(sentence, "jali %s needs an output file: -o NAME%.4s", v->name, v->suffixes);

@@ -1,5 +1,5 @@
-// A printed board as a scanner or a camera would show it: drawn from the features' figures by supersampling, with
-// nothing of what measures it. Used by tests/test_scan_board.c and bench/calibrate.c.
+// A printed board as a scanner or a camera would show it: drawn from the features' figures by supersampling,
+// with nothing of what measures it. Used by tests/test_scan_board.c and bench/calibrate.c.
 #ifndef TESTS_PRINTED_H
 #define TESTS_PRINTED_H
 
@@ -25,9 +25,9 @@ typedef struct look {
     double px_per_mm, turn, tilt[2], aside[2]; // tilt: share by which the far side is smaller
     double lens;                               // radial distortion at the corners, share
     bool mirrored;
-    double solid, through;    // levels 0 .. 1 of the plate and of what is seen through it
-    double light[4];          // slopes across the picture, vignetting, shadow: shares
-    double blur_px, noise;    // deviations, px and levels
+    double solid, through; // levels 0 .. 1 of the plate and of what is seen through it
+    double light[4];       // slopes across the picture, vignetting, shadow: shares
+    double blur_px, noise; // deviations, px and levels
     uint64_t seed;
 } look;
 
@@ -62,7 +62,12 @@ static inline bool feature_solid(const printed *p, const jali_board_feature *f, 
 {
     double w = f->width_mm, b = f->beside_mm, side = p->board->cell_mm * 0.8, ev = p->e_void, es = p->e_solid;
     bool flat = f->direction == JALI_BOARD_HORIZONTAL, diagonal = f->direction == JALI_BOARD_DIAGONAL;
-    double u = flat ? x : diagonal ? (x + y) * M_SQRT1_2 : y, v = flat ? y : diagonal ? (y - x) * M_SQRT1_2 : x;
+    double u = flat       ? x
+               : diagonal ? (x + y) * M_SQRT1_2
+                          : y,
+           v = flat       ? y
+               : diagonal ? (y - x) * M_SQRT1_2
+                          : x;
     double off = fabs(v) + wave(p, u, f->at_mm[0] + 2 * f->at_mm[1]);
     bool window = in_round_box(x, y, (side - ev) / 2, (side - ev) / 2, p->corner_mm);
     switch (f->kind) {
@@ -92,13 +97,14 @@ static inline bool printed_solid(const printed *p, double x, double y)
     if (k >= 0 && k < JALI_BOARD_CODE_BITS && fabs(y - b->code_mm[0][1]) < pitch) {
         double half = (b->code_side_mm - p->e_void) / 2;
         return !b->code[(int)k] || !in_round_box(x - b->code_mm[(int)k][0], y - b->code_mm[0][1], half, half,
-                                                fmin(p->corner_mm, half));
+                                                 fmin(p->corner_mm, half));
     }
     double left = b->feature[0].at_mm[0] - b->cell_mm / 2;
     int32_t column = (int32_t)floor((x - left) / b->cell_mm);
     for (int32_t row = 0; column >= 0 && column < b->columns && row < b->feature_count / b->columns; row++) {
         const jali_board_feature *f = &b->feature[row * b->columns + column];
-        if (fabs(y - f->at_mm[1]) < b->cell_mm / 2) return feature_solid(p, f, x - f->at_mm[0], y - f->at_mm[1]);
+        if (fabs(y - f->at_mm[1]) < b->cell_mm / 2)
+            return feature_solid(p, f, x - f->at_mm[0], y - f->at_mm[1]);
     }
     int32_t px = (int32_t)(x / p->plate_pixel_mm), py = (int32_t)(y / p->plate_pixel_mm);
     if (px >= p->plate->width_px || py >= p->plate->height_px) return false;
@@ -108,7 +114,8 @@ static inline bool printed_solid(const printed *p, double x, double y)
 /// From a place of the picture to one of the board.
 static inline void look_through(const look *l, const jali_board *b, double px, double py, double at[2])
 {
-    double half = fmax(l->width, l->height) / 2.0, x = (px - l->width / 2.0) / half, y = (py - l->height / 2.0) / half;
+    double half = fmax(l->width, l->height) / 2.0, x = (px - l->width / 2.0) / half,
+           y = (py - l->height / 2.0) / half;
     double r2 = x * x + y * y, bend = 1 + l->lens * r2;
     x *= bend * half;
     y *= bend * half;
@@ -138,7 +145,8 @@ static inline double covered(const printed *p, const look *l, double x, double y
     return (double)sum / (MANY * MANY);
 }
 
-static inline void blur_lines(float *level, int32_t count, int32_t length, int64_t line, int64_t step, double deviation)
+static inline void blur_lines(float *level, int32_t count, int32_t length, int64_t line, int64_t step,
+                              double deviation)
 {
     int32_t reach = (int32_t)ceil(4 * deviation);
     float *copy = malloc((size_t)length * sizeof *copy);
@@ -201,8 +209,9 @@ static inline look some_look(const jali_board *b, bool photograph, double dpi, u
     l.turn = photograph ? 2 * M_PI * look_share(seed) : (look_share(seed) - 0.5) * 0.2;
     if (!photograph && look_share(seed) < 0.5) l.turn += M_PI_2 * (double)(look_random(seed) % 4);
     l.mirrored = look_share(seed) < 0.3;
-    l.width = (int32_t)((longer + 8) * l.px_per_mm);
-    l.height = (int32_t)((longer + 12) * l.px_per_mm);
+    double room = photograph ? 1.12 : 1; // a tilt brings one side nearer
+    l.width = (int32_t)((room * longer + 8) * l.px_per_mm);
+    l.height = (int32_t)((room * longer + 12) * l.px_per_mm);
     for (int k = 0; k < 2; k++) l.aside[k] = (look_share(seed) - 0.5) * 6 * l.px_per_mm;
     bool dark = look_share(seed) < 0.5;
     l.solid = dark ? 0.12 + 0.15 * look_share(seed) : 0.6 + 0.2 * look_share(seed);

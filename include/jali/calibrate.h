@@ -99,7 +99,7 @@ JALI_API jali_status jali_calibration_sentences(jali_context *ctx, const jali_ca
 // --- From a scan
 
 typedef struct jali_scan_options {
-    const jali_board *board; // which board it is; NULL (default): its code says
+    const jali_board *board; // which board it is, whatever its code says; NULL (default): the code's
     double dpi; // pixels an inch; 0 (default): the board's own size is the scale, and a print that is
                 // smaller as a whole is not told from a scan that is
 } jali_scan_options;
@@ -118,7 +118,7 @@ typedef struct jali_measured {
 typedef struct jali_scan {
     jali_board board;
     jali_measured *feature; // [board.feature_count]
-    bool code_read;         // the board's code; false: the options' board was taken instead
+    bool code_read;         // the board's code could be read
     bool mirrored, dark;    // seen from behind; voids are darker than the plate
     double turn_deg;        // of the board's x axis, clockwise in the scan, -180 .. 180
     double map[9];          // from the board's mm to the scan's px, homogeneous, row by row

@@ -205,3 +205,42 @@ jali_measured measure_feature(const sight *s, const jali_board_feature *f, doubl
     return f->direction == JALI_BOARD_ROUND ? measure_round(s, f, contrast)
                                             : measure_bar(s, f, lines, soft_mm, contrast);
 }
+
+// --- Corners
+
+static const double CORNER_SHARE = 0.15; // of a window's side: beyond the radius of any corner
+
+// A corner of a bar's window: places count inwards from it along x and y.
+typedef struct corner_view {
+    double at[2], inward[2], level[2], outside, step;
+} corner_view;
+
+// Void in a rectangle of the corner's frame, mm2.
+static double void_in(const sight *s, const corner_view *c, double x0, double x1, double y0, double y1)
+{
+    int32_t columns = MAX(4, (int32_t)ceil((x1 - x0) / c->step)),
+            rows = MAX(4, (int32_t)ceil((y1 - y0) / c->step));
+    double sum = 0, dx = (x1 - x0) / columns, dy = (y1 - y0) / rows;
+    for (int32_t i = 0; i < columns * rows; i++) {
+        double x = x0 + (i % columns + 0.5) * dx, y = y0 + (i / columns + 0.5) * dy;
+        double seen = seen_at(s->picture, s->map, c->at[0] + x * c->inward[0], c->at[1] + y * c->inward[1]);
+        sum += (seen - c->level[0]) / (c->level[1] - c->level[0]);
+    }
+    return sum * dx * dy;
+}
+
+double corner_square(const sight *s, const jali_board_feature *f, int32_t corner)
+{
+    corner_view c = {.outside = GROWTH_MM + EDGE_PX * s->pixel_mm, .step = s->pixel_mm / 2};
+    double half = f->length_mm / 2, side = CORNER_SHARE * f->length_mm;
+    for (int k = 0; k < 2; k++) {
+        double sign = corner >> k & 1 ? 1 : -1;
+        c.at[k] = f->at_mm[k] + sign * half;
+        c.inward[k] = -sign;
+    }
+    levels_at(s->levels, c.at[0], c.at[1], c.level);
+    // Where both edges came out, beside the corner; then what the corner keeps of the square they enclose.
+    double wide = void_in(s, &c, -c.outside, side, side, 2 * side) / side;
+    double high = void_in(s, &c, side, 2 * side, -c.outside, side) / side;
+    return (wide * high - void_in(s, &c, -c.outside, side, -c.outside, side)) / (1 - M_PI_4);
+}

@@ -109,11 +109,6 @@ static void describe(const mark_guess *guess, const homography *map, jali_scan *
     scan->scale[0] = scan->scale[1] = 1;
 }
 
-static jali_status copy_board(jali_context *ctx, const jali_board *given, jali_board *board)
-{
-    return jali_board_decode(ctx, given->code, board);
-}
-
 jali_status find_board(jali_context *ctx, const jali_picture *picture, const jali_board *given,
                        jali_scan *scan, homography *map)
 {
@@ -142,13 +137,14 @@ jali_status find_board(jali_context *ctx, const jali_picture *picture, const jal
                  "in the "
                  "picture, 10 pixels across at least, the odd one in line with two corners",
                  rounds));
-    if (!scan->code_read) {
-        if (!given)
-            TRY(fail(
-                ctx, JALI_NO_RESULT,
-                "the marks of a board were found, but its code along the lower edge cannot be read: scan it "
-                "sharper, or say which board it is (--printer, or --phi-s and --phi-v, as for jali board)"));
-        TRY(copy_board(ctx, given, &scan->board));
+    if (!scan->code_read && !given)
+        TRY(fail(
+            ctx, JALI_NO_RESULT,
+            "the marks of a board were found, but its code along the lower edge cannot be read: scan it "
+            "sharper, or say which board it is by --phi-s and --phi-v, as they were given to jali board"));
+    if (given) {
+        jali_board_free(ctx, &scan->board);
+        TRY(jali_board_decode(ctx, given->code, &scan->board));
     }
     *map = map_of_board(&scan->board, &guess[marked].map);
     describe(&guess[marked], map, scan);

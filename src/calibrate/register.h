@@ -5,7 +5,7 @@
 #include "calibrate/view.h"
 
 /// Find the board and read its code.
-///   in     given  the board to take when the code cannot be read; NULL: none
+///   in     given  the board to take whatever the code says; NULL: the code's
 ///   out    scan   board, code_read, mirrored, dark, turn_deg, pixel_mm
 ///          map    from the board's mm to the picture
 ///   fails  JALI_NO_RESULT, JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED

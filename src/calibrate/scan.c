@@ -7,8 +7,8 @@
 #include "calibrate/robust.h"
 
 // What a scan must show for its figures to be trusted.
-static const double PIXELS_A_WIDTH = 3; // of the narrower width expected: fewer, and a lost bar and a thin
-                                        // one differ by less than noise
+static const double PIXELS_A_WIDTH = 3;   // of the narrower width expected: fewer, and a lost bar and a thin
+                                          // one differ by less than noise
 static const double BLURS_A_WIDTH = 1.4;  // likewise, deviations of the blur
 static const double LEAST_CONTRAST = 0.1; // 25 of 255 grey levels: 1 % of noise is a tenth of it
 static const double MOST_RESIDUAL_MM =
@@ -16,6 +16,7 @@ static const double MOST_RESIDUAL_MM =
 static const double MARGIN_MM = 0.25,
                     MARGIN_PX = 2.5;          // from an edge: where the level is that of the tone alone
 static const double SURE_WIDTHS = 1.25;       // times phi: bars that tell the errors to expect of the others
+static const double LEAST_CORNER_MM = 0.1;    // a radius that a scan can tell from none
 static const double SOFT_DEVIATIONS = 1.6832; // from a fifth to four fifths of a blurred edge
 
 jali_scan_options jali_scan_defaults(void)
@@ -137,6 +138,22 @@ static void apply_dpi(double dpi, const homography *map, jali_scan *scan)
     }
 }
 
+// The corners of the windows of bars that lie along x or y. One that is below what chance makes is none.
+static void measure_corners(const sight *s, double *scratch, jali_scan *scan)
+{
+    double square, spread;
+    int32_t count = 0;
+    for (int32_t i = 0; i < scan->board.feature_count; i++) {
+        const jali_board_feature *f = &scan->board.feature[i];
+        if (f->kind != JALI_BOARD_SOLID || f->direction == JALI_BOARD_DIAGONAL) continue;
+        for (int32_t corner = 0; corner < 4; corner++) scratch[count++] = corner_square(s, f, corner);
+    }
+    int32_t kept = robust_mean(scratch, count, 0.004, scratch + count, &square, &spread);
+    if (square < MAX(LEAST_CORNER_MM * LEAST_CORNER_MM, 4 * spread / sqrt(kept))) return;
+    scan->corner_mm = sqrt(square);
+    scan->corners = kept;
+}
+
 static jali_status measure_board(jali_context *ctx, const jali_picture *picture, homography *map,
                                  jali_scan *scan)
 {
@@ -146,7 +163,7 @@ static jali_status measure_board(jali_context *ctx, const jali_picture *picture,
     double *lines, *scratch;
     sight s = {.picture = picture, .map = map, .levels = &l, .pixel_mm = scan->pixel_mm};
     TRY(ARENA(ctx, lines, 2 * MOST_LINES));
-    TRY(ARENA(ctx, scratch, 2 * scan->board.feature_count));
+    TRY(ARENA(ctx, scratch, 8 * scan->board.feature_count));
     TRY(ALLOCATE_CLEARED(ctx, scan->feature, scan->board.feature_count));
     // Where things are, then how wide they are, then which are there.
     for (int round = 0; round < 3; round++) {
@@ -161,6 +178,7 @@ static jali_status measure_board(jali_context *ctx, const jali_picture *picture,
         expect_errors(scan, scratch, &s);
         if (round < 2) TRY(refine_map(ctx, &scan->board, scan->feature, map, &scan->residual_mm));
     }
+    measure_corners(&s, scratch, scan);
 done:
     levels_free(ctx, &l);
     arena_rewind(ctx, mark);

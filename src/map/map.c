@@ -9,7 +9,7 @@
 #include <jali/map.h>
 #include <jali/png.h>
 
-#include "map/glyphs.h"
+#include "raster/glyphs.h"
 #include "mesh/sides.h"
 #include "base/vector.h"
 

@@ -1,6 +1,6 @@
-// Letters of 5 x 7 dots for legends. Internal to map.
-#ifndef MAP_GLYPHS_H
-#define MAP_GLYPHS_H
+// Letters of 5 x 7 dots for legends and notes in pictures. Internal.
+#ifndef RASTER_GLYPHS_H
+#define RASTER_GLYPHS_H
 
 #include "base/base.h"
 

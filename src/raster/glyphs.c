@@ -1,5 +1,5 @@
 // Letters of 5 x 7 dots: digits and what units and the words of a legend need.
-#include "map/glyphs.h"
+#include "raster/glyphs.h"
 
 typedef struct glyph {
     char letter;
