@@ -1,12 +1,15 @@
-// Levels of both tones under uneven light. Where a tone has no wide place near by, farther ones count.
+// Levels of both tones under uneven light. Solid is everywhere near by. Void is not: among slots the wide
+// places are cells away; but the same light falls on both, so what is carried over is how much lighter void
+// is than solid.
 #include "calibrate/levels.h"
 
 #include "raster/raster.h"
 #include "scan/least.h"
 
-static const double DRAWN_PIXEL_MM = 0.05;
-static const double SAMPLE_MM = 0.2;
+static const double PIXELS_A_CELL = 100;           // of the drawn board, in which sure places are found
+static const double SAMPLES_A_CELL = 30;           // along a side
 static const double NEAR_CELLS = 1, FAR_CELLS = 4; // deviations of the neighbourhood
+static const double DARKEST = 0.02;                // a level that ratios are still taken of
 static const double FAR_WEIGHT = 1e-3;             // of the far one
 
 void levels_free(jali_context *ctx, levels *l)
@@ -60,7 +63,7 @@ done:
 static int64_t sample(const jali_picture *p, const homography *map, const jali_bitmap *sure, double pixel_mm,
                       const levels *l, block *blocks)
 {
-    int32_t stride = MAX(1, (int32_t)(SAMPLE_MM / pixel_mm));
+    const int32_t stride = (int32_t)(PIXELS_A_CELL / SAMPLES_A_CELL);
     int64_t missing = 0;
     for (int32_t y = 0; y < sure->height_px; y += stride)
         for (int32_t x = 0; x < sure->width_px; x += stride) {
@@ -100,18 +103,39 @@ static double level_of_node(const levels *l, const block *blocks, double x, doub
     return solve_normal(&e, fit) ? fit[0] : weights > 0 ? sum / weights : NAN;
 }
 
+// Voids' levels as multiples of solid's, which is known by now.
+static void take_ratios(const levels *l, block *blocks)
+{
+    for (int32_t i = 0; i < l->columns * l->rows; i++) {
+        double level[2];
+        if (blocks[i].n == 0) continue;
+        levels_at(l, blocks[i].x / blocks[i].n, blocks[i].y / blocks[i].n, level);
+        blocks[i].level /= fmax(level[0], DARKEST);
+    }
+}
+
+static void fit_nodes(levels *l, const block *blocks, int tone, double cell_mm)
+{
+    for (int32_t k = 0; k < l->rows; k++)
+        for (int32_t i = 0; i < l->columns; i++) {
+            double *node = l->node[k * l->columns + i];
+            double fit = level_of_node(l, blocks, (i + 0.5) * l->step_mm, (k + 0.5) * l->step_mm, cell_mm);
+            node[tone] = tone == 0 ? fit : fit * fmax(node[0], DARKEST);
+        }
+}
+
 jali_status learn_levels(jali_context *ctx, const jali_picture *picture, const jali_board *board,
                          const homography *map, double margin_mm, levels *l)
 {
     jali_status status;
     jali_bitmap drawn = {0}, sure = {0};
     block *blocks = NULL;
-    double pixel_mm = DRAWN_PIXEL_MM;
+    double pixel_mm = board->cell_mm / PIXELS_A_CELL;
     *l = (levels){.step_mm = board->cell_mm / 2};
     l->columns = (int32_t)ceil(board->width_mm / l->step_mm);
     l->rows = (int32_t)ceil(board->height_mm / l->step_mm);
     TRY(jali_board_bitmap(ctx, board, &pixel_mm, &drawn));
-    TRY(ALLOCATE(ctx, l->node, l->columns * l->rows));
+    TRY(ALLOCATE_CLEARED(ctx, l->node, l->columns * l->rows));
     for (int tone = 0; tone < 2; tone++) {
         TRY(step(ctx, "calibrate", 0.3 + 0.1 * tone));
         release(ctx, blocks);
@@ -121,10 +145,8 @@ jali_status learn_levels(jali_context *ctx, const jali_picture *picture, const j
         TRY(mark_sure(ctx, board, &drawn, tone == 0, pixel_mm, margin_mm, &sure));
         if (sample(picture, map, &sure, pixel_mm, l, blocks) > 0)
             TRY(fail(ctx, JALI_NO_RESULT, "a part of the board is not in the picture: all of it must be"));
-        for (int32_t k = 0; k < l->rows; k++)
-            for (int32_t i = 0; i < l->columns; i++)
-                l->node[k * l->columns + i][tone] =
-                    level_of_node(l, blocks, (i + 0.5) * l->step_mm, (k + 0.5) * l->step_mm, board->cell_mm);
+        if (tone == 1) take_ratios(l, blocks);
+        fit_nodes(l, blocks, tone, board->cell_mm);
     }
 done:
     release(ctx, blocks);

@@ -12,7 +12,8 @@
 #include "calibrate/robust.h"
 
 static const double GROWTH_MM = 0.12;    // an edge may be so far off and still leave its flank plain
-static const double EDGE_PX = 2;         // and blurred so far
+static const double EDGE_PX = 2;         // and blurred so far, or
+static const double EDGE_BLURS = 2.7;    // so many deviations: 0.1 % of an edge is left beyond
 static const double FLANK_MM = 0.45;     // of plain flank that is looked at, and
 static const double FLANK_PX = 2;        // so much more
 static const double PRINTED_SHARE = 0.5; // of the width expected: it is there
@@ -24,6 +25,11 @@ static const double LEAST_EXPECTED_MM = 0.04;
 typedef struct flank {
     double sum, count;
 } flank;
+
+static double edge_of(const sight *s)
+{
+    return fmax(EDGE_PX * s->pixel_mm, EDGE_BLURS * s->blur_mm);
+}
 
 static bool is_solid(const jali_board_feature *f)
 {
@@ -47,12 +53,11 @@ static window window_of(const sight *s, const jali_board_feature *f)
     const double *d = along[f->direction];
     window w = {.along = {d[0], d[1]}, .across = {-d[1], d[0]}, .centre = {f->at_mm[0], f->at_mm[1]}};
     w.half_length = f->window_mm / 2;
-    w.plain = f->width_mm / 2 + GROWTH_MM + EDGE_PX * s->pixel_mm;
+    w.plain = f->width_mm / 2 + GROWTH_MM + edge_of(s);
     if (f->beside_mm > 0) // between two bars or slots: to the middle of either
         w.reach = f->width_mm / 2 + f->beside_mm / 2;
     else
-        w.reach = fmin(w.plain + FLANK_MM + FLANK_PX * s->pixel_mm,
-                       f->reach_mm - GROWTH_MM - EDGE_PX * s->pixel_mm);
+        w.reach = fmin(w.plain + FLANK_MM + FLANK_PX * s->pixel_mm, f->reach_mm - GROWTH_MM - edge_of(s));
     w.lines = (int32_t)fmin(fmax(f->window_mm / s->pixel_mm, 12), MOST_LINES);
     w.samples = (int32_t)fmin(fmax(4 * w.reach / s->pixel_mm, 24), 2000);
     return w;
@@ -146,10 +151,8 @@ typedef struct disc_view {
 
 static disc_view view_of(const sight *s, const jali_board_feature *f)
 {
-    disc_view d = {.plain = f->width_mm / 2 + GROWTH_MM + EDGE_PX * s->pixel_mm,
-                   .half = f->kind == JALI_BOARD_PIN};
-    d.reach =
-        fmin(d.plain + FLANK_MM + FLANK_PX * s->pixel_mm, f->reach_mm - GROWTH_MM - EDGE_PX * s->pixel_mm);
+    disc_view d = {.plain = f->width_mm / 2 + GROWTH_MM + edge_of(s), .half = f->kind == JALI_BOARD_PIN};
+    d.reach = fmin(d.plain + FLANK_MM + FLANK_PX * s->pixel_mm, f->reach_mm - GROWTH_MM - edge_of(s));
     d.steps = (int32_t)fmin(fmax(4 * d.reach / s->pixel_mm, 24), 1000);
     d.step = 2 * d.reach / d.steps;
     return d;
@@ -172,7 +175,7 @@ static double level_around(const sight *s, const jali_board_feature *f, const di
         around.sum += seen_at(s->picture, s->map, f->at_mm[0] + at[0], f->at_mm[1] + at[1]);
         around.count++;
     }
-    return around.count > 8 ? around.sum / around.count : model;
+    return around.count > d->steps ? around.sum / around.count : model;
 }
 
 // By its area.
@@ -231,7 +234,7 @@ static double void_in(const sight *s, const corner_view *c, double x0, double x1
 
 double corner_square(const sight *s, const jali_board_feature *f, int32_t corner)
 {
-    corner_view c = {.outside = GROWTH_MM + EDGE_PX * s->pixel_mm, .step = s->pixel_mm / 2};
+    corner_view c = {.outside = GROWTH_MM + edge_of(s), .step = s->pixel_mm / 2};
     double half = f->length_mm / 2, side = CORNER_SHARE * f->length_mm;
     for (int k = 0; k < 2; k++) {
         double sign = corner >> k & 1 ? 1 : -1;

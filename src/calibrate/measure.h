@@ -9,8 +9,8 @@ typedef struct sight {
     const jali_picture *picture;
     const homography *map;
     const levels *levels;
-    double pixel_mm;
-    double e_solid, e_void; // expected: how much wider solids, narrower voids came out, mm
+    double pixel_mm, blur_mm; // blur_mm: 0 until it is known
+    double e_solid, e_void;   // expected: how much wider solids, narrower voids came out, mm
 } sight;
 
 /// Measure one feature; width_mm is what was found also where it did not print.

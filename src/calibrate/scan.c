@@ -13,8 +13,8 @@ static const double BLURS_A_WIDTH = 1.4;  // likewise, deviations of the blur
 static const double LEAST_CONTRAST = 0.1; // 25 of 255 grey levels: 1 % of noise is a tenth of it
 static const double MOST_RESIDUAL_MM =
     0.12; // places against the map: a bent board or a lens, and windows miss their bars
-static const double MARGIN_MM = 0.25,
-                    MARGIN_PX = 2.5;          // from an edge: where the level is that of the tone alone
+// From an edge, where the level is that of the tone alone: what growth, pixels and blur reach.
+static const double MARGIN_MM = 0.2, MARGIN_PX = 2, MARGIN_BLURS = 2.7;
 static const double SURE_WIDTHS = 1.25;       // times phi: bars that tell the errors to expect of the others
 static const double LEAST_CORNER_MM = 0.1;    // a radius that a scan can tell from none
 static const double SOFT_DEVIATIONS = 1.6832; // from a fifth to four fifths of a blurred edge
@@ -170,11 +170,12 @@ static jali_status measure_board(jali_context *ctx, const jali_picture *picture,
         TRY(step(ctx, "calibrate", 0.3 + 0.2 * round));
         if (round < 2) {
             levels_free(ctx, &l);
-            TRY(learn_levels(ctx, picture, &scan->board, map, MARGIN_MM + MARGIN_PX * scan->pixel_mm, &l));
+            double edge_mm = fmax(MARGIN_PX * scan->pixel_mm, MARGIN_BLURS * s.blur_mm);
+            TRY(learn_levels(ctx, picture, &scan->board, map, MARGIN_MM + edge_mm, &l));
         }
         together t = measure_all(&s, scan, lines);
         scan->contrast = t.contrast;
-        scan->blur_mm = t.soft_count ? t.soft / t.soft_count / SOFT_DEVIATIONS : 0;
+        scan->blur_mm = s.blur_mm = t.soft_count ? t.soft / t.soft_count / SOFT_DEVIATIONS : 0;
         expect_errors(scan, scratch, &s);
         if (round < 2) TRY(refine_map(ctx, &scan->board, scan->feature, map, &scan->residual_mm));
     }
