@@ -115,9 +115,12 @@ static void tell(const settings *set, const jali_print *print, const jali_compar
     const jali_prediction *p = &c->print;
     bool taken = set->json && strcmp(set->json, "-") == 0;
     for (int32_t i = 0; i < set->output_count; i++) taken |= strcmp(set->output[i], "-") == 0;
-    if (!set->sl1 && (c->quarter_turns != 0 || c->mirrored)) // screens show their layers mirrored
-        say(set, "the print was%s turned clockwise by %d degrees to lie as the picture does",
-            c->mirrored ? " mirrored and" : "", 90 * c->quarter_turns);
+    if (!set->sl1 && (c->quarter_turns != 0 || c->mirrored)) { // screens show their layers mirrored
+        const char *const turn[4] = {"", "a quarter turn clockwise", "half a turn",
+                                     "a quarter turn counter-clockwise"};
+        say(set, "the print lies as the picture does after %s%s%s", c->mirrored ? "mirroring" : "",
+            c->mirrored && c->quarter_turns ? " and " : "", turn[c->quarter_turns]);
+    }
     if (!set->scan)
         say(set, "layers %d to %d of %d looked at, %.1f x %.1f mm", print->first + 1, print->last + 1,
             print->layers, print->size_mm[0], print->size_mm[1]);

@@ -225,6 +225,47 @@ static void write_job(const char *text)
     write_text("job.json", text, strlen(text));
 }
 
+// A plate of 24 x 19 mm with a hole of 10 x 5 mm in its middle, two.pbm 20 mm wide, laid as strokes 1 mm
+// wide.
+static void write_plate_gcode(const char *name)
+{
+    FILE *file = fopen(name, "w");
+    CHECK(file);
+    fprintf(file, "M83\n;HEIGHT:0.2\n;WIDTH:1\nG0 Z0.2\n");
+    for (int32_t row = 0; row < 19; row++) {
+        double y = 50.5 + row;
+        bool hole = row >= 7 && row < 12;
+        fprintf(file, "G0 X30.5 Y%.1f\nG1 X%.1f E1\n", y, hole ? 36.5 : 53.5);
+        if (hole) fprintf(file, "G0 X47.5\nG1 X53.5 E1\n");
+    }
+    CHECK(fclose(file) == 0);
+}
+
+TEST(prints_are_compared_with_their_picture)
+{
+    double error = -1;
+    write_plate_gcode("plate.gcode");
+    run("compare two.pbm --width 20 --gcode plate.gcode -o compared.png --json compared.json", 0,
+        "layers 1 to 1 of 1");
+    CHECK(sscanf(printed, "error %lf %%", &error) == 1 && error > 0 &&
+          error < 0.5); // the strokes' round ends
+    CHECK(strstr(printed, "1 piece\n"));
+    CHECK(access("compared.png", F_OK) == 0);
+    run("compare two.pbm --width 20 --gcode plate.gcode --json -", 0, "");
+    CHECK(printed[0] == '{' && strstr(printed, "\"precision_rate\": 0.99") &&
+          strstr(printed, "\"witness\": \"gcode\""));
+    run("compare two.pbm --width 20", 2, "there is no print; --gcode, --sl1 or --scan");
+    run("compare two.pbm --width 20 --gcode plate.gcode --scan two.pbm", 2, "there are several prints");
+    run("compare two.pbm --width 10 --gcode plate.gcode", 1,
+        "24.0 x 19.0 mm large, the plate 14.0 x 11.5 mm");
+    run("compare two.pbm --width 20 --gcode two.pbm", 4, "lays no plastic");
+    run("compare two.pbm --width 20 --sl1 plate.gcode", 4, "no SL1 file");
+    run("compare two.pbm --width 20 --scan plate.gcode", 4, "plate.gcode");
+    run("compare two.pbm --width 20 --scan two.pbm", 1, "not found in the scan");
+    run("compare two.pbm --width 20 --gcode nowhere.gcode", 1, "nowhere.gcode: No such file");
+    run("compare two.pbm --width 20 --gcode plate.gcode -o two.pbm", 2, "does not write this type");
+}
+
 TEST(surfaces_and_jobs_are_refused_with_a_sentence)
 {
     write_text("half.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", 24);
@@ -583,6 +624,7 @@ int main(void)
         cmocka_unit_test(a_printer_sets_what_no_option_does),
         cmocka_unit_test(predict_says_what_a_printer_would_make_of_a_picture),
         cmocka_unit_test(bad_pictures_are_rejected),
+        cmocka_unit_test(prints_are_compared_with_their_picture),
         cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),
         cmocka_unit_test(pictures_of_a_job_have_printers),
         cmocka_unit_test(pictures_are_carved_through_a_surface),

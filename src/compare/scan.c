@@ -17,7 +17,6 @@ enum { FINEST_PX = 800, BAND_ROWS = 64 };
 static const double LEAST_AGREEMENT = 0.5;
 static const double LEAST_PX_PER_PHI_S = 3;
 static const double LIGHT_MM = 4;       // the neighbourhood over which light is taken to be even
-static const double FINER = 1.5;        // pixels of the straightened scan a pixel of the scan
 static const double MOST_UNSEEN = 1e-3; // of the plate
 
 static jali_status check_scan(jali_context *ctx, const alignment *a, const plate_frame *f,
@@ -114,7 +113,8 @@ jali_status jali_compare_scan(jali_context *ctx, const jali_reference *reference
     c->agreement = a.agreement;
     find_way(&a, &plate, c);
     const double middle[2] = {plate.width_px / 2.0, plate.height_px / 2.0};
-    int32_t shrink = MAX(1, (int32_t)(1 / (FINER * homography_scale(&a.map, middle))));
+    // At least as fine as the scan is, and not twice as fine without need.
+    int32_t shrink = MAX(1, (int32_t)(1 / homography_scale(&a.map, middle)));
     TRY(straighten(ctx, scan, &plate, &a.map, shrink, &straight));
     TRY(grey_of_bitmap(ctx, &plate, shrink, &drawn));
     TRY(share_of_solid(ctx, &drawn, LIGHT_MM / (frame.pixel_mm[0] * shrink), &straight));
