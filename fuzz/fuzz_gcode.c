@@ -8,7 +8,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     jali_context *ctx = fuzz_context();
     jali_print print;
     jali_print_options opt = jali_print_defaults();
-    opt.pixel_mm = 0.5; // a bed of 1000 mm stays small
+    opt.pixel_mm = 1; // beds of some metres stay small
     require_print(ctx, jali_print_gcode_bytes(ctx, data, size, "print", &opt, &print), &print);
     jali_print_free(ctx, &print);
     jali_context_free(ctx);

@@ -79,6 +79,9 @@ TEST(refusals_are_sentences)
     jali_bytes archive = archive_of(NULL, good, 2);
     opt.pixel_mm = 0;
     check_refused(archive.data, archive.size, &opt, JALI_BAD_INPUT, "how large a pixel is");
+    jali_bytes_free(ctx, &archive);
+    archive = archive_of("", good, 2); // settings without a byte
+    check_refused(archive.data, archive.size, &opt, JALI_BAD_INPUT, "how large a pixel is");
     opt.pixel_mm = 0.05; // given by the user
     jali_print print;
     CHECK_OK(jali_print_sl1_bytes(ctx, archive.data, archive.size, "a.sl1", &opt, &print));

@@ -15,6 +15,7 @@
 #include <strings.h>
 
 static const double FARTHEST_MM = 1e5;
+static const double WIDEST_MM = 10; // and highest, of a stroke; the largest nozzles lay 5 mm
 
 machine machine_at_rest(void)
 {
@@ -72,10 +73,10 @@ static void follow_comment(const char *at, const char *end, machine *m)
     if ((value = value_of(at, "TYPE", ":")) || (value = value_of(at, "feature", ": ")))
         m->kind = kind_of(value);
     else if ((value = value_of(at, "WIDTH", ":")) || (value = value_of(at, "LINE_WIDTH", ":")))
-        take_length(value, end, 100, &m->width_mm);
+        take_length(value, end, WIDEST_MM, &m->width_mm);
     else if ((value = value_of(at, "HEIGHT", ":")) || (value = value_of(at, "LAYER_HEIGHT", ":")) ||
              (value = value_of(at, "Layer height", ":")))
-        take_length(value, end, 100, &m->height_mm);
+        take_length(value, end, WIDEST_MM, &m->height_mm);
     else if ((value = value_of(at, "filament_diameter", ":=")))
         take_length(value, end, 20, &m->filament_mm);
 }

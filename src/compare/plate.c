@@ -30,7 +30,7 @@ static jali_status check_options(jali_context *ctx, const jali_reference *refere
 }
 
 jali_status draw_wanted(jali_context *ctx, const jali_reference *reference, const jali_compare_options *opt,
-                       plate_frame *f, jali_bitmap *plate)
+                        plate_frame *f, jali_bitmap *plate)
 {
     const jali_bitmap *picture = &reference->picture;
     jali_status status = check_options(ctx, reference, opt);

@@ -36,8 +36,9 @@ static jali_status take_piece(void *user, const char *piece, size_t size, bool l
 // The value behind "key =" at the beginning of a line; NULL when there is none.
 static const char *setting(const jali_bytes *text, const char *key, const char **end)
 {
-    const char *at = (const char *)text->data, *stop = at + text->size;
     size_t length = strlen(key);
+    if (text->size == 0) return NULL; // and no data
+    const char *at = (const char *)text->data, *stop = at + text->size;
     while (at < stop) {
         const char *line_end = memchr(at, '\n', (size_t)(stop - at));
         if (!line_end) line_end = stop;
