@@ -81,6 +81,22 @@ cat >> "$out/index.html" <<ROW
 ROW
 
 echo
+echo "  And for your printer: the board to print and scan; edges moved for one whose voids print narrower still:"
+echo
+"$jali" board --force-overwrite --quiet -o "$out/board.3mf" -o "$out/board.png"
+printf '    board.3mf: print it flat, scan it, then: jali calibrate --scan SCAN -o mine.json\n'
+cat > "$out/narrow-voids.json" <<'PROFILE'
+{"jali_printer": 1, "name": "narrow-voids", "inherits": "hori-z500",
+ "phi_e_void_mm": {"value": 0.2, "source": "chosen, for the demo"}}
+PROFILE
+"$jali" carve "$out/mask.png" --width 50 --printer "$out/narrow-voids.json" --nudge 3 --force-overwrite \
+    -o "$out/mask-nudged.3mf" 2>&1 | sed -n '/nudged\|predicted/s/^/    /p'
+cat >> "$out/index.html" <<ROW
+<figure><figcaption>board: <span>bars, holes and pins of stepped widths, to calibrate a printer</span></figcaption>
+<img src="board.png" alt="reference board"><p><a href="board.3mf">3mf</a></p></figure>
+ROW
+
+echo
 echo "  jali check, on the last plate as a slicer would read it:"
 "$jali" check "$out/sunflower.3mf" 2>&1 | sed 's/^/    /'
 here=$(cd "$out" && pwd)

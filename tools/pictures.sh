@@ -16,6 +16,9 @@ done
 "$jali" carve "$out/tree.png" --width 60 --force 20 --quiet --no-predict -o "$work/strong.stl" --force-overwrite \
     --map "$out/tree-stress.png"
 "$jali" carve "$out/girih.png" --surface vase:h=120 --repeat 3 --frame 0 --quiet --no-predict -o "$work/vase.stl"
+"$jali" board --quiet --force-overwrite -o "$out/board.png"
+"$jali" sample tree --size 300 -o "$work/tree.png" --quiet
+"$jali" predict "$work/tree.png" --width 40 --quiet --force-overwrite -o "$out/tree-predicted.png"
 for light in "" --lamp; do
     "$jali" render "$work/vase.stl" $light --view 0,1,-0.3 --size 560 --quiet --force-overwrite \
         -o "$out/vase${light#-}.png"
