@@ -210,14 +210,16 @@ static void print_error(const figures *f, const char *before)
         printf("%s%.2f", before, f->error);
 }
 
-// "connected -> optimised (white/black -> white/black)"
+// "connected -> optimised (white/black -> white/black), 5 -> 1 pieces"; one piece each goes without saying.
 static void print_pair(const figures *f, bool recall)
 {
     print_error(f, " | ");
     print_error(f + 1, " -> ");
-    if (recall && f[0].error >= 0 && f[1].error >= 0)
+    if (f[0].error < 0 || f[1].error < 0) return;
+    if (recall)
         printf(" (%.0f/%.0f -> %.0f/%.0f)", f[0].recall_white, f[0].recall_black, f[1].recall_white,
                f[1].recall_black);
+    if (f[0].pieces != 1 || f[1].pieces != 1) printf(", %d -> %d pieces", f[0].pieces, f[1].pieces);
 }
 
 static void print_row(const bench_run *run, const figures row[COLUMNS])

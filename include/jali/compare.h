@@ -95,7 +95,8 @@ JALI_API jali_status jali_compare(jali_context *ctx, const jali_reference *refer
 ///   fails  JALI_NO_RESULT (the plate is not found, part of it is not seen, or a pixel is wider than a third
 ///   of
 ///          phi_s; the message says what would do), and as jali_compare
-///   cost   about three seconds; 28 bytes a pixel of the scan's part that shows the plate, up to four times that
+///   cost   about three seconds; 28 bytes a pixel of the scan's part that shows the plate, up to four times
+///   that
 JALI_API jali_status jali_compare_scan(jali_context *ctx, const jali_reference *reference,
                                        const jali_picture *scan, const jali_compare_options *opt,
                                        jali_comparison *comparison);

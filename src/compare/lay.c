@@ -17,7 +17,7 @@ typedef struct counts {
 
 typedef struct sampling {
     const plate_grid *plate;
-    const laying *l;
+    laying l;
     int64_t *column;  // [plate width] of the print, beyond it too
     uint64_t *row;    // [bands * stride] scratch, when counting
     counts *count;    // [bands]
@@ -27,12 +27,12 @@ typedef struct sampling {
 // The print's column or row under the plate's `i`; it may lie beyond the print.
 static int64_t print_index(const sampling *s, int axis, int32_t i)
 {
-    const jali_bitmap *plate = s->plate->bitmap, *print = s->l->print;
+    const jali_bitmap *plate = s->plate->bitmap, *print = s->l.print;
     int32_t from = axis == 0 ? plate->width_px : plate->height_px;
     int32_t to = axis == 0 ? print->width_px : print->height_px;
-    double mm = (i + 0.5 - from / 2.0) * s->plate->pixel_mm[axis] - s->l->shift_mm[axis];
+    double mm = (i + 0.5 - from / 2.0) * s->plate->pixel_mm[axis] - s->l.shift_mm[axis];
     const double hair = 1e-7; // equal grids meet, whatever rounds
-    return (int64_t)floor(fmin(fmax(mm / s->l->pixel_mm[axis] + to / 2.0 + hair, -1e9), 1e9));
+    return (int64_t)floor(fmin(fmax(mm / s->l.pixel_mm[axis] + to / 2.0 + hair, -1e9), 1e9));
 }
 
 // 64 pixels of a row from column x on, which may lie beyond it.
@@ -47,7 +47,7 @@ static uint64_t word_at(const jali_bitmap *a, const uint64_t *row, int64_t x)
 
 static void sample_row(const sampling *s, int32_t y, uint64_t *row)
 {
-    const jali_bitmap *plate = s->plate->bitmap, *print = s->l->print;
+    const jali_bitmap *plate = s->plate->bitmap, *print = s->l.print;
     int64_t y_print = print_index(s, 1, y);
     memset(row, 0, (size_t)plate->stride * sizeof *row);
     if (y_print < 0 || y_print >= print->height_px) return;
@@ -72,7 +72,7 @@ static void count_band(void *shared, int32_t band)
     uint64_t *row = s->row + band * plate->stride;
     counts *c = &s->count[band];
     for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, plate->height_px); y++) {
-        if (y % s->l->row_step != s->l->row_step / 2) continue;
+        if (y % s->l.row_step != s->l.row_step / 2) continue;
         const uint64_t *wanted = plate->word + y * plate->stride;
         sample_row(s, y, row);
         c->all += plate->width_px;
@@ -134,7 +134,7 @@ static double count_agreement(jali_context *ctx, sampling *s)
 jali_status agreement_of(jali_context *ctx, const plate_grid *plate, const laying *l, double *agreement)
 {
     arena_mark mark = arena_here(ctx);
-    sampling s = {.plate = plate, .l = l};
+    sampling s = {.plate = plate, .l = *l};
     jali_status status = begin_counting(ctx, &s);
     *agreement = status == JALI_OK ? count_agreement(ctx, &s) : 0;
     arena_rewind(ctx, mark);
@@ -145,7 +145,7 @@ jali_status sample_print(jali_context *ctx, const plate_grid *plate, const layin
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    sampling s = {.plate = plate, .l = l, .out = sampled};
+    sampling s = {.plate = plate, .l = *l, .out = sampled};
     TRY(jali_bitmap_create(ctx, plate->bitmap->width_px, plate->bitmap->height_px, sampled));
     TRY(ARENA(ctx, s.column, plate->bitmap->width_px));
     find_columns(&s);
@@ -165,7 +165,7 @@ static bool shift_once(jali_context *ctx, sampling *s, double step_mm, laying *l
     for (int i = 0; i < 8; i++) {
         laying moved = *l;
         for (int k = 0; k < 2; k++) moved.shift_mm[k] += way[i][k] * step_mm;
-        s->l = &moved;
+        s->l = moved;
         double agreed = count_agreement(ctx, s);
         if (agreed <= *agreement) continue;
         *agreement = agreed;
@@ -182,7 +182,7 @@ jali_status shift_print(jali_context *ctx, const plate_grid *plate, double step_
     enum { MOST_STEPS = 64 }; // of one length
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    sampling s = {.plate = plate, .l = l};
+    sampling s = {.plate = plate, .l = *l};
     TRY(begin_counting(ctx, &s));
     *agreement = count_agreement(ctx, &s);
     for (; step_mm >= 0.99 * least_mm; step_mm /= 2)

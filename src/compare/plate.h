@@ -14,7 +14,7 @@ typedef struct plate_frame {
 /// Draw the picture in its frame, void around it. Without a frame nothing is known of what lies around.
 ///   fails  JALI_BAD_VALUE (options), JALI_NO_MEMORY, JALI_LIMIT
 jali_status draw_wanted(jali_context *ctx, const jali_reference *reference, const jali_compare_options *opt,
-                       plate_frame *f, jali_bitmap *plate);
+                        plate_frame *f, jali_bitmap *plate);
 
 /// From c->plate, what was printed on that grid, the picture's part and all its figures.
 jali_status measure_plate(jali_context *ctx, const jali_reference *reference, const jali_compare_options *opt,

@@ -278,8 +278,8 @@ static jali_status make_room(jali_context *ctx, gcode_drawing *d)
     if ((int64_t)side[0] * side[1] > most_px)
         return fail(ctx, JALI_LIMIT, "%s: a drawing of %d x %d px is too large; a coarser pixel would do",
                     d->in.name, side[0], side[1]);
-    d->left_mm = (all.low[0] + all.high[0]) / 2 - side[0] / 2 * d->opt.pixel_mm;
-    d->top_mm = (all.low[1] + all.high[1]) / 2 + side[1] / 2 * d->opt.pixel_mm;
+    d->left_mm = (all.low[0] + all.high[0]) / 2 - 0.5 * side[0] * d->opt.pixel_mm;
+    d->top_mm = (all.low[1] + all.high[1]) / 2 + 0.5 * side[1] * d->opt.pixel_mm;
     TRY(jali_bitmap_create(ctx, side[0], side[1], &d->sheet));
     TRY(jali_bitmap_create(ctx, side[0], side[1], &d->fill));
     TRY(votes_create(ctx, side[0], side[1], &d->votes));
