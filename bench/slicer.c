@@ -413,6 +413,17 @@ static int run_bars(jali_context *ctx, const witness *w)
     return 0;
 }
 
+static void remove_folder(const witness *w)
+{
+    static const char *const name[] = {"plate.stl", "plate.gcode", "plate.sl1"};
+    char path[128];
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", w->folder, name[i]);
+        remove(path);
+    }
+    rmdir(w->folder);
+}
+
 int main(int argc, char **argv)
 {
     mallopt(M_MMAP_THRESHOLD, 1 << 30); // as the command line does
@@ -442,7 +453,11 @@ int main(int argc, char **argv)
             data = argv[i];
     }
     if (!mkdtemp(w.folder) || jali_context_create(&copt, &ctx) != JALI_OK) return 1;
-    if (bars) return run_bars(ctx, &w);
+    if (bars) {
+        int failed = run_bars(ctx, &w);
+        remove_folder(&w);
+        return failed;
+    }
     printf("%s", head);
     for (int32_t i = MAX(first, 0); i <= MIN(last, BENCH_RUNS - 1); i++) {
         const bench_run *run = &bench_runs[order[i]];
@@ -452,6 +467,7 @@ int main(int argc, char **argv)
         count++;
     }
     print_means((const figures(*)[COLUMNS])row, count);
+    remove_folder(&w);
     jali_context_free(ctx);
     return 0;
 }
