@@ -1,7 +1,8 @@
 // Calibration from scans: boards printed with known errors, looked at by scanners and phones, measured,
 // compared.
 //
-//     build/release/bench/calibrate [SEEDS [FIRST]]     100 seeds, about three seconds each and row
+//     build/release/bench/calibrate [SEEDS [FIRST [ROW]]]     100 seeds, some three seconds each and row; all
+//     rows
 //
 // The pictures come from tests/printed.h, which shares nothing with what measures them.
 #include "printed.h"
@@ -120,14 +121,17 @@ static jali_status run_row(jali_context *ctx, const row *r, int32_t first, int32
 
 int main(int argc, char **argv)
 {
-    int32_t seeds = argc > 1 ? atoi(argv[1]) : 100, first = argc > 2 ? atoi(argv[2]) : 1;
+    long number[3] = {100, 1, 0}; // seeds, the first, the row (0: all)
+    for (int i = 1; i < argc && i <= 3; i++) number[i - 1] = strtol(argv[i], NULL, 10);
     jali_context *ctx;
     if (jali_context_create(NULL, &ctx) != JALI_OK) return 1;
     printf("| board and picture                | right | wrong | refused | phi_e solid, rms / worst | phi_e "
            "void |\n");
     printf("|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-        if (run_row(ctx, &rows[i], first, seeds) != JALI_OK) printf("%s\n", jali_message(ctx));
+        if ((number[2] == 0 || number[2] == (long)i + 1) &&
+            run_row(ctx, &rows[i], (int32_t)number[1], (int32_t)number[0]) != JALI_OK)
+            printf("%s\n", jali_message(ctx));
     jali_context_free(ctx);
     return 0;
 }

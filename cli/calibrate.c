@@ -58,7 +58,6 @@ static jali_status gather_widths(jali_context *ctx, const settings *set, measure
     if (set->measured) TRY(jali_widths_parse(ctx, set->measured, widths));
     if (set->scan) {
         TRY(measure_scan(ctx, set, m));
-        tell_scan(set, &m->scan);
         TRY(jali_scan_widths(ctx, &m->scan, widths));
     }
 done:
@@ -178,8 +177,9 @@ jali_status run_calibrate(jali_context *ctx, const settings *set)
     TRY(jali_calibrate(ctx, &widths, &c));
     c.corner_mm = m.scan.corner_mm;
     c.corners = m.scan.corners;
-    TRY(tell(ctx, set, &c));
     TRY(jali_calibration_apply(ctx, &c, source_of(set), &printer));
+    if (set->scan) tell_scan(set, &m.scan);
+    TRY(tell(ctx, set, &c));
     name_profile(set, set->output[0], &printer);
     TRY(jali_printer_write(ctx, &printer, &profile));
     for (; count < set->output_count; count++) out[count] = (output){set->output[count], &profile};

@@ -287,7 +287,8 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
     if (set->help) return true;
     if (set->job && set->operand)
         return wrong(sentence, "--job names the pictures; \"%.60s\" is one too many", set->operand);
-    if (v->operand && !set->operand && !set->job && !set->measured && !(set->scan && v->groups & GROUP_CALIBRATE))
+    if (v->operand && !set->operand && !set->job && !set->measured &&
+        !(set->scan && v->groups & GROUP_CALIBRATE))
         return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
     if (*v->suffixes && !(v->groups & WRITES_NOTHING_TOO) && set->output_count == 0)
         return wrong(sentence, "jali %s needs an output file: -o NAME%.4s", v->name, v->suffixes);

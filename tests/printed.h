@@ -127,22 +127,27 @@ static inline void look_through(const look *l, const jali_board *b, double px, d
     at[1] = b->height_mm / 2 - v;
 }
 
+/// The share of a pixel that the plate covers, by 6 x 6 samples.
 static inline double covered(const printed *p, const look *l, double x, double y)
 {
-    enum { FEW = 3, MANY = 8 };
+    enum { MANY = 6 };
     double at[2];
     int sum = 0;
-    for (int k = 0; k < FEW * FEW; k++) {
-        look_through(l, p->board, x + (k % FEW) / (FEW - 1.0), y + (k / FEW) / (FEW - 1.0), at);
-        sum += printed_solid(p, at[0], at[1]);
-    }
-    if (sum == 0 || sum == FEW * FEW) return sum > 0;
-    sum = 0;
     for (int k = 0; k < MANY * MANY; k++) {
         look_through(l, p->board, x + (k % MANY + 0.5) / MANY, y + (k / MANY + 0.5) / MANY, at);
         sum += printed_solid(p, at[0], at[1]);
     }
     return (double)sum / (MANY * MANY);
+}
+
+// Of the corners of a row of pixels, their upper ones.
+static inline void look_at_corners(const printed *p, const look *l, int32_t y, bool *solid)
+{
+    double at[2];
+    for (int32_t x = 0; x <= l->width; x++) {
+        look_through(l, p->board, x, y, at);
+        solid[x] = printed_solid(p, at[0], at[1]);
+    }
 }
 
 static inline void blur_lines(float *level, int32_t count, int32_t length, int64_t line, int64_t step,
@@ -176,12 +181,23 @@ static inline jali_picture looked_at(const printed *p, const look *l)
     float *level = malloc(count * sizeof *level);
     uint64_t seed = l->seed * 2654435761u + 12345;
     jali_picture picture = {l->width, l->height, malloc(count)};
-    for (int32_t y = 0; y < l->height; y++)
+    // A pixel whose corners are alike is of one tone: nothing that is printed is as narrow as a pixel.
+    bool *above = malloc((size_t)l->width + 1), *below = malloc((size_t)l->width + 1);
+    look_at_corners(p, l, 0, below);
+    for (int32_t y = 0; y < l->height; y++) {
+        bool *keep = above;
+        above = below;
+        below = keep;
+        look_at_corners(p, l, y + 1, below);
         for (int32_t x = 0; x < l->width; x++) {
-            double share = covered(p, l, x, y);
+            int corners = above[x] + above[x + 1] + below[x] + below[x + 1];
+            double share = corners % 4 == 0 ? corners / 4 : covered(p, l, x, y);
             level[(size_t)y * (size_t)l->width + (size_t)x] =
                 (float)(l->through + (l->solid - l->through) * share);
         }
+    }
+    free(above);
+    free(below);
     if (l->blur_px > 0.05) {
         blur_lines(level, l->height, l->width, l->width, 1, l->blur_px);
         blur_lines(level, l->width, l->height, 1, l->width, l->blur_px);

@@ -196,6 +196,30 @@ TEST(predict_says_what_a_printer_would_make_of_a_picture)
     unlink("a.png");
 }
 
+TEST(a_board_is_made_and_measured)
+{
+    run("board -o b.3mf -o b.svg --phi-s 0.2 --phi-v 0.3", 0, "135 features");
+    run("check b.3mf", 0, "");
+    CHECK(strstr(printed, "1 piece") && strstr(printed, "is a solid"));
+    run("board --phi-s 1.5 --phi-v 1.5 --within 100 -o c.3mf", 1, "100 mm is the longest side");
+    run("board --phi-s 4 -o c.3mf", 2, "0.05 to 3 mm");
+    // A picture of the board is a perfect print of it.
+    run("board --phi-s 1 --phi-v 1 --pixel 0.2 -o board.png", 0, "");
+    run("calibrate --scan board.png --map measured.png -o perfect.json", 0, "phi_s is at most 0.4 mm");
+    CHECK(strstr(said, "come out 0.00") && access("measured.png", R_OK) == 0);
+    run("board --printer ./perfect.json -o d.3mf", 0, "phi_s 0.4");
+    run("board --phi-s 1 --phi-v 1 --pixel 0.5 -o coarse.png", 0, "");
+    run("calibrate --scan coarse.png -o e.json", 1, "at least 150 dpi");
+    run("calibrate --scan b.3mf -o e.json", 4, "which is not read");
+    CHECK(access("e.json", F_OK) != 0);
+    run("calibrate --measured solid:0.4=0.5 -o e.json", 1, "too few");
+    run("calibrate --measured solid:0.4 -o e.json", 2, "kind:designed=measured");
+    run("calibrate -o e.json", 2, "needs a WIDTHS");
+    run("calibrate --measured solid:1=1 --map m.png -o e.json", 2, "belong to a scan");
+    write_text("w.csv", "0,4,0,5,solid\n", 14);
+    run("calibrate w.csv -o e.json", 4, "line 1");
+}
+
 TEST(bad_pictures_are_rejected)
 {
     write_text("empty.png", "", 0);
@@ -623,6 +647,7 @@ int main(void)
         cmocka_unit_test(numbers_are_numbers_in_their_range),
         cmocka_unit_test(a_printer_sets_what_no_option_does),
         cmocka_unit_test(predict_says_what_a_printer_would_make_of_a_picture),
+        cmocka_unit_test(a_board_is_made_and_measured),
         cmocka_unit_test(bad_pictures_are_rejected),
         cmocka_unit_test(prints_are_compared_with_their_picture),
         cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),

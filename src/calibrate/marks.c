@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double SOFTEN_PX = 1;        // blur before: noise does not fray edges
 enum { MOST_ROUNDS = 64 };                // the largest ones of either tone
 static const double NEIGHBOURHOOD = 0.04; // of the longer side: deviation of what is evened out; above a mark
 static const double EDGE_LEVEL = 0.2;     // in local spreads: flat noise is below
@@ -180,6 +181,7 @@ jali_status guess_marks(jali_context *ctx, const grey *g, mark_guess *guess, int
     *count = *rounds = 0;
     TRY(grey_create(ctx, g->width, g->height, g->pixel, &evened));
     memcpy(evened.level, g->level, (size_t)g->width * (size_t)g->height * sizeof *g->level);
+    TRY(grey_blur(ctx, &evened, SOFTEN_PX));
     TRY(grey_normalise(ctx, &evened, NEIGHBOURHOOD * MAX(g->width, g->height)));
     for (int dark = 0; dark < 2; dark++) {
         disc d[MOST_ROUNDS];

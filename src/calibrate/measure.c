@@ -21,7 +21,7 @@ static const double LINE_SHARE = 0.3;    // of the same, a line at a time
 static const double LINES_THERE = 0.9;   // share of the lines at which it must be
 static const double LEAST_EXPECTED_MM = 0.04;
 
-// The mean of a line's samples within an interval, into a running sum.
+// Samples of what lies beside a feature.
 typedef struct flank {
     double sum, count;
 } flank;
@@ -161,8 +161,9 @@ static disc_view view_of(const sight *s, const jali_board_feature *f)
 // The i-th place, from the centre; false when it is not looked at.
 static bool place_of(const disc_view *d, int32_t i, double at[2])
 {
-    at[0] = (i % d->steps + 0.5) * d->step - d->reach;
-    at[1] = (i / d->steps + 0.5) * d->step - d->reach;
+    int32_t row = i / d->steps, column = i % d->steps;
+    at[0] = (column + 0.5) * d->step - d->reach;
+    at[1] = (row + 0.5) * d->step - d->reach;
     return hypot(at[0], at[1]) <= d->reach && !(d->half && at[1] < 0);
 }
 
@@ -225,7 +226,8 @@ static double void_in(const sight *s, const corner_view *c, double x0, double x1
             rows = MAX(4, (int32_t)ceil((y1 - y0) / c->step));
     double sum = 0, dx = (x1 - x0) / columns, dy = (y1 - y0) / rows;
     for (int32_t i = 0; i < columns * rows; i++) {
-        double x = x0 + (i % columns + 0.5) * dx, y = y0 + (i / columns + 0.5) * dy;
+        int32_t row = i / columns, column = i % columns;
+        double x = x0 + (column + 0.5) * dx, y = y0 + (row + 0.5) * dy;
         double seen = seen_at(s->picture, s->map, c->at[0] + x * c->inward[0], c->at[1] + y * c->inward[1]);
         sum += (seen - c->level[0]) / (c->level[1] - c->level[0]);
     }

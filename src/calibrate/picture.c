@@ -35,8 +35,9 @@ static void paint_row(void *shared, int32_t row)
     for (int32_t column = 0; column < s->c.width; column++, rgb += 3) {
         double sum = 0;
         for (int32_t i = 0; i < s->samples * s->samples; i++) {
-            double x = (column + (i % s->samples + 0.5) / s->samples) * s->pixel_mm;
-            double y = (row + (i / s->samples + 0.5) / s->samples) * s->pixel_mm;
+            int32_t u = i % s->samples, v = i / s->samples;
+            double x = (column + (u + 0.5) / s->samples) * s->pixel_mm;
+            double y = (row + (v + 0.5) / s->samples) * s->pixel_mm;
             double level = seen_at(s->picture, &s->map, x, s->scan->board.height_mm - y);
             sum += isnan(level) ? 1 : level;
         }

@@ -15,9 +15,9 @@ enum { WORKING_PX = 2000 };                // longer side of the copy in which m
 static bool centre_mark(const jali_picture *p, double radius, double at[2], double *inside, double *around)
 {
     double reach = MARK_REACH * radius, sum[2] = {0}, count[2] = {0}, weight = 0, gravity[2] = {0};
-    int32_t x0 = (int32_t)floor(at[0] - reach), x1 = (int32_t)ceil(at[0] + reach);
-    int32_t y0 = (int32_t)floor(at[1] - reach), y1 = (int32_t)ceil(at[1] + reach);
-    if (x0 < 0 || y0 < 0 || x1 >= p->width_px || y1 >= p->height_px) return false;
+    int32_t x0 = (int32_t)fmax(floor(at[0] - reach), 0), x1 = (int32_t)fmin(ceil(at[0] + reach), p->width_px);
+    int32_t y0 = (int32_t)fmax(floor(at[1] - reach), 0),
+            y1 = (int32_t)fmin(ceil(at[1] + reach), p->height_px);
     for (int pass = 0; pass < 2; pass++)
         for (int32_t y = y0; y < y1; y++)
             for (int32_t x = x0; x < x1; x++) {
@@ -37,7 +37,8 @@ static bool centre_mark(const jali_picture *p, double radius, double at[2], doub
             }
     *inside = sum[0] / fmax(count[0], 1);
     *around = sum[1] / fmax(count[1], 1);
-    if (!(weight > 0) || fabs(*inside - *around) < LEAST_CONTRAST) return false;
+    if (!(weight > 0 && count[0] > 0 && count[1] > 0) || fabs(*inside - *around) < LEAST_CONTRAST)
+        return false;
     for (int k = 0; k < 2; k++) at[k] = gravity[k] / weight;
     return true;
 }
@@ -71,7 +72,8 @@ static double mean_around(const jali_picture *p, const homography *map, double p
     homography_apply(map, (double[]){first[0] + (place + half) * pitch, first[1]}, b);
     double dx = b[0] - a[0], dy = b[1] - a[1]; // half a side along the row; across it is the same length
     for (int i = 0; i < STEPS * STEPS; i++) {
-        double u = 2.0 * (i % STEPS) / (STEPS - 1) - 1, v = 2.0 * (i / STEPS) / (STEPS - 1) - 1;
+        int32_t row = i / STEPS, column = i % STEPS;
+        double u = 2.0 * column / (STEPS - 1) - 1, v = 2.0 * row / (STEPS - 1) - 1;
         sum += level_at(p, a[0] + u * dx - v * dy, a[1] + u * dy + v * dx);
     }
     return sum / (STEPS * STEPS);
