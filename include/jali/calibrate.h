@@ -109,7 +109,7 @@ JALI_API jali_scan_options jali_scan_defaults(void);
 /// A feature as it was found.
 typedef struct jali_measured {
     bool printed;
-    double width_mm;  // 0 when it did not print
+    double width_mm;  // what there is, also where it does not count as printed; below 0 by chance
     double spread_mm; // standard deviation along it
     double off_mm[2]; // from where it should be, on the board; bars: across alone
 } jali_measured;
@@ -137,10 +137,8 @@ JALI_API void jali_scan_free(jali_context *ctx, jali_scan *scan);
 /// side, voids lighter or darker, under uneven light.
 ///   in     opt   NULL means the defaults
 ///   out    scan  free with jali_scan_free
-///   fails  JALI_NO_RESULT (no board, not all of it, its code cannot be read, too coarse, too blurred, too
-///   little
-///          contrast, bent: the sentence says how much and what is needed), JALI_NO_MEMORY, JALI_LIMIT,
-///          JALI_CANCELLED
+///   fails  JALI_NO_RESULT (no board, not all of it, its code cannot be read, coarse, blurred, grey in grey,
+///          bent: the sentence says how much and what is needed), JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
 ///   cost   under a second for 300 dpi
 JALI_API jali_status jali_scan_board(jali_context *ctx, const jali_picture *picture,
                                      const jali_scan_options *opt, jali_scan *scan);

@@ -12,6 +12,7 @@
 #include "calibrate/robust.h"
 
 static const double GROWTH_MM = 0.12;    // an edge may be so far off and still leave its flank plain
+static const double SPARE_MM = 0.03;     // beyond the growth that is known
 static const double EDGE_PX = 2;         // and blurred so far, or
 static const double EDGE_BLURS = 2.7;    // so many deviations: 0.1 % of an edge is left beyond
 static const double FLANK_MM = 0.45;     // of plain flank that is looked at, and
@@ -26,9 +27,11 @@ typedef struct flank {
     double sum, count;
 } flank;
 
+// How far about a drawn edge the level may be neither tone's: by growth, and by pixels or blur.
 static double edge_of(const sight *s)
 {
-    return fmax(EDGE_PX * s->pixel_mm, EDGE_BLURS * s->blur_mm);
+    double growth = fmax(fabs(s->e_solid), fabs(s->e_void)) / 2 + SPARE_MM;
+    return fmax(growth, GROWTH_MM) + fmax(EDGE_PX * s->pixel_mm, EDGE_BLURS * s->blur_mm);
 }
 
 static bool is_solid(const jali_board_feature *f)
@@ -53,11 +56,11 @@ static window window_of(const sight *s, const jali_board_feature *f)
     const double *d = along[f->direction];
     window w = {.along = {d[0], d[1]}, .across = {-d[1], d[0]}, .centre = {f->at_mm[0], f->at_mm[1]}};
     w.half_length = f->window_mm / 2;
-    w.plain = f->width_mm / 2 + GROWTH_MM + edge_of(s);
+    w.plain = f->width_mm / 2 + edge_of(s);
     if (f->beside_mm > 0) // between two bars or slots: to the middle of either
         w.reach = f->width_mm / 2 + f->beside_mm / 2;
     else
-        w.reach = fmin(w.plain + FLANK_MM + FLANK_PX * s->pixel_mm, f->reach_mm - GROWTH_MM - edge_of(s));
+        w.reach = fmin(w.plain + FLANK_MM + FLANK_PX * s->pixel_mm, f->reach_mm - edge_of(s));
     w.lines = (int32_t)fmin(fmax(f->window_mm / s->pixel_mm, 12), MOST_LINES);
     w.samples = (int32_t)fmin(fmax(4 * w.reach / s->pixel_mm, 24), 2000);
     return w;
@@ -151,8 +154,8 @@ typedef struct disc_view {
 
 static disc_view view_of(const sight *s, const jali_board_feature *f)
 {
-    disc_view d = {.plain = f->width_mm / 2 + GROWTH_MM + edge_of(s), .half = f->kind == JALI_BOARD_PIN};
-    d.reach = fmin(d.plain + FLANK_MM + FLANK_PX * s->pixel_mm, f->reach_mm - GROWTH_MM - edge_of(s));
+    disc_view d = {.plain = f->width_mm / 2 + edge_of(s), .half = f->kind == JALI_BOARD_PIN};
+    d.reach = fmin(d.plain + FLANK_MM + FLANK_PX * s->pixel_mm, f->reach_mm - edge_of(s));
     d.steps = (int32_t)fmin(fmax(4 * d.reach / s->pixel_mm, 24), 1000);
     d.step = 2 * d.reach / d.steps;
     return d;
@@ -236,7 +239,7 @@ static double void_in(const sight *s, const corner_view *c, double x0, double x1
 
 double corner_square(const sight *s, const jali_board_feature *f, int32_t corner)
 {
-    corner_view c = {.outside = GROWTH_MM + edge_of(s), .step = s->pixel_mm / 2};
+    corner_view c = {.outside = edge_of(s), .step = s->pixel_mm / 2};
     double half = f->length_mm / 2, side = CORNER_SHARE * f->length_mm;
     for (int k = 0; k < 2; k++) {
         double sign = corner >> k & 1 ? 1 : -1;

@@ -170,8 +170,9 @@ static jali_status measure_board(jali_context *ctx, const jali_picture *picture,
         TRY(step(ctx, "calibrate", 0.3 + 0.2 * round));
         if (round < 2) {
             levels_free(ctx, &l);
+            double growth_mm = fmax(MARGIN_MM, fmax(fabs(s.e_solid), fabs(s.e_void)) / 2 + MARGIN_MM / 3);
             double edge_mm = fmax(MARGIN_PX * scan->pixel_mm, MARGIN_BLURS * s.blur_mm);
-            TRY(learn_levels(ctx, picture, &scan->board, map, MARGIN_MM + edge_mm, &l));
+            TRY(learn_levels(ctx, picture, &scan->board, map, growth_mm + edge_mm, &l));
         }
         together t = measure_all(&s, scan, lines);
         scan->contrast = t.contrast;
