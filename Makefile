@@ -5,10 +5,10 @@
 #   make bench      times and memory, stage by stage        make pictures   draw docs/pictures again
 #   make fuzz       each fuzzer for FUZZ_SECONDS            make format     lay the code out
 #   make coverage   what the tests reach                    make lint       clang-tidy, cppcheck, layout
-#   make docs       renew what docs/cli.md quotes           make results    the tables of docs/results.md
+#   make docs       renew what the docs quote               make results    the tables of docs/results.md
 PACKAGES := cmake ninja-build gcc g++ pkg-config libpng-dev libjpeg62-turbo-dev libwebp-dev librsvg2-dev \
             libcairo2-dev libdeflate-dev libzip-dev libexpat1-dev libjansson-dev libcmocka-dev \
-            libmetis-dev libopenblas-dev
+            libmetis-dev libopenblas-dev libmicrohttpd-dev
 FUZZ_PACKAGES     := clang libclang-rt-dev
 JUDGE_PACKAGES    := admesh prusa-slicer calculix-ccx
 LINT_PACKAGES     := clang-format clang-tidy cppcheck
@@ -69,7 +69,7 @@ coverage: packages
 	@cmake --preset coverage >/dev/null
 	@cmake --build --preset coverage -j $(JOBS)
 	@ctest --preset coverage -j $(JOBS)
-	@gcovr --root . --filter src/ --filter cli/ build/coverage
+	@gcovr --root . --filter src/ --filter cli/ --filter serve/ build/coverage
 
 pictures: release
 	@tools/pictures.sh build/release/jali docs/pictures
@@ -78,9 +78,10 @@ pictures: release
 results: release
 	@tools/results.sh build/release/bench
 
-# Renew the blocks of docs/cli.md that show what the program says.
+# Renew the blocks of docs/cli.md and docs/serve.md that show what the program says.
 docs: release
-	@tools/help.sh build/release/jali docs/cli.md >build/cli.md && mv build/cli.md docs/cli.md
+	@for page in cli serve; do \
+	    tools/help.sh build/release/jali docs/$$page.md >build/page.md && mv build/page.md docs/$$page.md; done
 
 SOURCES = $(shell git ls-files '*.c' '*.h')
 

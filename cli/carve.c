@@ -1,5 +1,6 @@
 // jali carve PICTURE and jali adapt PICTURE: the whole pipeline, or its image stages alone; one picture on a
 // plate, or one or more on a surface.
+#include "layers.h"
 #include "outputs.h"
 #include "structure.h"
 #include "base/bytes.h"
@@ -21,18 +22,6 @@ static jali_status describe(jali_context *ctx, const settings *set, const jali_r
              printer->paper ? ", the paper's method" : "", set->surface ? ", surface " : "",
              set->surface ? set->surface : "");
     return bytes_append(ctx, text, words, strlen(words) + 1);
-}
-
-static jali_status without_margin(jali_context *ctx, const jali_bitmap *mask, int32_t margin,
-                                  jali_bitmap *picture)
-{
-    jali_status status =
-        jali_bitmap_create(ctx, mask->width_px - 2 * margin, mask->height_px - 2 * margin, picture);
-    if (status != JALI_OK) return status;
-    for (int32_t y = 0; y < picture->height_px; y++)
-        for (int32_t x = 0; x < picture->width_px; x++)
-            if (jali_bitmap_get(mask, x + margin, y + margin)) jali_bitmap_set(picture, x, y, true);
-    return JALI_OK;
 }
 
 static jali_status make_bytes(jali_context *ctx, const made *m, const char *path, jali_bytes *bytes)
@@ -69,8 +58,8 @@ done:
 /// What is written, filled in one after the other.
 typedef struct shelf {
     int32_t count;
-    jali_bytes bytes[MOST_OUTPUTS + OUTPUTS_BESIDE];
-    output out[MOST_OUTPUTS + OUTPUTS_BESIDE];
+    jali_bytes bytes[MOST_FILES];
+    output out[MOST_FILES];
 } shelf;
 
 // The next place on the shelf, for a file of this name.
@@ -84,6 +73,8 @@ static jali_status write_everything(jali_context *ctx, const settings *set, cons
 {
     jali_status status = JALI_OK;
     shelf s = {0};
+    int32_t layer_count;
+    const layer *each = layer_list(&layer_count);
     for (int32_t i = 0; i < set->output_count; i++)
         TRY(make_bytes(ctx, m, set->output[i], place_for(&s, set->output[i])));
     if (set->json) TRY(figures_json(ctx, m, place_for(&s, set->json)));
@@ -93,6 +84,8 @@ static jali_status write_everything(jali_context *ctx, const settings *set, cons
     if (set->map) TRY(map_bytes(ctx, &m->result[0], set->map, JALI_STRESS, place_for(&s, set->map)));
     if (set->moved_map)
         TRY(map_bytes(ctx, &m->result[0], set->moved_map, JALI_DISPLACEMENT, place_for(&s, set->moved_map)));
+    for (int32_t i = 0; i < layer_count; i++)
+        if (set->layers >> i & 1) TRY(each[i].bytes(ctx, m, place_for(&s, each[i].name)));
     TRY(write_outputs(ctx, s.out, s.count));
 done:
     for (int32_t i = 0; i < s.count; i++) jali_bytes_free(ctx, &s.bytes[i]);
@@ -248,7 +241,7 @@ static jali_status collect(jali_context *ctx, settings *set, bool solid, job *j,
         m->set[i].surface = set->surface;
         m->set[i].wall = set->wall;
         m->set[i].make.solid = solid;
-        m->set[i].make.optimise.details = set->report || set->json;
+        m->set[i].make.optimise.details = set->report || set->json || layers_need_details(set->layers);
         TRY(load_picture(ctx, &m->set[i], &m->picture[i]));
     }
 done:

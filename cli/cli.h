@@ -26,6 +26,7 @@ typedef struct settings {
     int32_t output_count;
     const char *json, *report, *render; // files
     const char *map, *moved_map;        // stress and displacement: .png, .ply, .vtu
+    uint32_t layers;                    // bit i: layer i of layers.h as well, under its own name
     double limit_mpa;                   // 0 = the material's
     bool no_structure;
     jali_read_options read;
@@ -47,6 +48,9 @@ typedef struct settings {
     jali_print_options print;       // likewise; its pixel 0 = as the archive says
     jali_context_options context;
     double max_memory_mb;
+    int32_t port; // of the page; 0 = any that is free
+    int32_t jobs; // at one time; 0 = one a processor
+    double job_memory_mb, job_seconds;
     int32_t progress; // progress_kind
     bool petsc;       // the structure is solved by several processes
     bool quiet, force_overwrite, help;
@@ -74,7 +78,9 @@ typedef enum option_group {
     GROUP_SOLVER = 262144,
     GROUP_BOARD = 524288,
     GROUP_CALIBRATE = 1048576,
-    GROUP_WITNESS = 1 << 22,      // a printed result to compare with
+    GROUP_WITNESS = 1 << 22, // a printed result to compare with
+    GROUP_SERVE = 1 << 23,
+    NEEDS_NO_OPERAND = 1 << 29,   // no options either: the operand may be left out
     WRITES_NOTHING_TOO = 1 << 30, // no options: what is to be written, -o, may be left out
 } option_group;
 
@@ -101,6 +107,7 @@ jali_status run_render(jali_context *ctx, const settings *set);
 jali_status run_calibrate(jali_context *ctx, const settings *set);
 jali_status run_board(jali_context *ctx, const settings *set);
 jali_status run_predict(jali_context *ctx, const settings *set);
+jali_status run_serve(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 
 /// Draw a mesh as the settings say, as a PNG; appended.
@@ -110,6 +117,14 @@ jali_status render_png(jali_context *ctx, const jali_mesh *mesh, const jali_rend
 /// Where the user's own printers are: $XDG_CONFIG_HOME/jali/printers. Appended with an end mark; nothing when
 /// neither that nor a home is known.
 jali_status printers_folder(jali_context *ctx, jali_bytes *folder);
+
+/// Hand over each printer there is: those that are built in, then the user's own by name.
+///   in     see   folder: NULL of a built-in one; printer: NULL when `file` cannot be read, and the context
+///   says why
+jali_status each_printer(jali_context *ctx,
+                         void (*see)(void *user, const char *folder, const char *file,
+                                     const jali_printer *printer),
+                         void *user);
 
 /// Read set->printer, and fill in what follows: the three phi and the material, where none were given
 /// outright. A material's texts may lie in set->make.printer: copies of the settings must not outlive them.
@@ -164,6 +179,9 @@ jali_status draw_svg(jali_context *ctx, const uint8_t *bytes, size_t size, const
 
 /// Words for people, on stderr, unless --quiet.
 void say(const settings *set, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/// What the program ends with after this.
+exit_code exit_code_of(jali_status status);
 
 /// Run a verb in a context made from the settings: signals, progress, exit code.
 ///   in     refusal   what is wrong with the settings, and then nothing is run; NULL = nothing

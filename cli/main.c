@@ -4,6 +4,9 @@
 #include "options.h"
 #include "outputs.h"
 #include "processes.h"
+#ifdef JALI_HAVE_SERVER
+#include "worker.h"
+#endif
 
 #include <malloc.h>
 #include <stdio.h>
@@ -43,6 +46,10 @@ static const verb verbs[] = {
      run_board},
     {"calibrate", "WIDTHS", "a printer's profile from what was measured on a printed board",
      GROUP_CALIBRATE | GROUP_JSON | OUTPUT_AND_RUN, ".json", run_calibrate},
+#ifdef JALI_HAVE_SERVER
+    {"serve", "PICTURE", "a page for all of this, in the browser of this machine",
+     GROUP_SERVE | GROUP_RUN | NEEDS_NO_OPERAND, "", run_serve},
+#endif
     {"list", "KIND", "list what is built in: samples, surfaces, materials, printers", GROUP_RUN, "",
      run_list},
 };
@@ -60,7 +67,9 @@ static int print_help(void)
     printf("jali carves a black and white picture through a plate or a vessel, ready to print.\n\n");
     for (int32_t i = 0; i < VERB_COUNT; i++) {
         char head[64];
-        snprintf(head, sizeof head, "jali %s %s", verbs[i].name, verbs[i].operand ? verbs[i].operand : "");
+        bool optional = verbs[i].groups & NEEDS_NO_OPERAND;
+        snprintf(head, sizeof head, "jali %s %s%s%s", verbs[i].name, optional ? "[" : "",
+                 verbs[i].operand ? verbs[i].operand : "", optional ? "]" : "");
         printf("  %-26s %s\n", head, verbs[i].what);
     }
     printf("\n\"jali VERB --help\" lists the options of a verb. Pictures are PNG, JPEG, WebP, PBM, PGM, PPM"
@@ -75,7 +84,12 @@ static int print_help(void)
 static int print_verb_help(const verb *v)
 {
     bool optional = v->groups & WRITES_NOTHING_TOO;
-    printf("jali %s%s%s", v->name, v->operand ? " " : "", v->operand ? v->operand : "");
+    bool alone = v->groups & NEEDS_NO_OPERAND;
+    printf("jali %s%s%s%s", v->name,
+           alone        ? " ["
+           : v->operand ? " "
+                        : "",
+           v->operand ? v->operand : "", alone ? "]" : "");
     if (*v->suffixes) printf(" %s-o NAME%.4s%s", optional ? "[" : "", v->suffixes, optional ? "]" : "");
     printf(": %s\n\n", v->what);
     print_options(v);
@@ -109,6 +123,9 @@ int main(int argc, char **argv)
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     char sentence[SENTENCE_BYTES];
     settings set = default_settings();
+#ifdef JALI_HAVE_SERVER
+    if (argc > 1 && strcmp(argv[1], "work") == 0) return run_worker(argc, argv);
+#endif
     if (argc < 2) return refuse("what shall be done? \"jali --help\" lists what there is");
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0)
         return print_help();

@@ -157,6 +157,11 @@ static const option options[] = {
     {"walls", NULL, FLAG, GROUP_CHECK, FIELD(walls), 0, 0, 0,
      "measure the thinnest wall and the narrowest gap as well"},
 
+    {"port", "N", WHOLE, GROUP_SERVE, FIELD(port), 0, 65535, 0, "port of the page; 0 takes one that is free (7170)"},
+    {"jobs", "N", WHOLE, GROUP_SERVE, FIELD(jobs), 1, 64, 0, "so many jobs at one time, the others wait (all)"},
+    {"job-memory", "MB", NUMBER, GROUP_SERVE, FIELD(job_memory_mb), 16, 1e6, "MB", "the most a job may hold (2000)"},
+    {"job-time", "S", NUMBER, GROUP_SERVE, FIELD(job_seconds), 0.1, 1e6, "s", "the longest a job may take (600)"},
+
     {"threads", "N", WHOLE, GROUP_RUN, FIELD(context.threads), 1, 1024, 0,
      "threads to use; never changes a result (all)"},
     {"max-memory", "MB", NUMBER, GROUP_RUN, FIELD(max_memory_mb), 1, 1e9, "MB",
@@ -184,10 +189,19 @@ settings default_settings(void)
         .view = jali_render_defaults(),
         .phi_given_mm = {NAN, NAN, NAN},
         .board = jali_board_defaults(),
+        .port = 7170,
+        .job_memory_mb = 2000,
+        .job_seconds = 600,
     };
     set.print.pixel_mm = 0;
     set.make.place.width_mm = 0; // 70 stands unless a height is given
     return set;
+}
+
+const option *option_list(int32_t *count)
+{
+    *count = OPTION_COUNT;
+    return options;
 }
 
 static const option *find_option(const char *name, size_t length)
@@ -287,7 +301,7 @@ bool parse_options(const verb *v, int argc, char **argv, settings *set, char sen
     if (set->help) return true;
     if (set->job && set->operand)
         return wrong(sentence, "--job names the pictures; \"%.60s\" is one too many", set->operand);
-    if (v->operand && !set->operand && !set->job && !set->measured &&
+    if (v->operand && !set->operand && !set->job && !set->measured && !(v->groups & NEEDS_NO_OPERAND) &&
         !(set->scan && v->groups & GROUP_CALIBRATE))
         return wrong(sentence, "jali %s needs a %s", v->name, v->operand);
     if (*v->suffixes && !(v->groups & WRITES_NOTHING_TOO) && set->output_count == 0)

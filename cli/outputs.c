@@ -107,7 +107,7 @@ bool check_outputs(const verb *v, const settings *set, char *sentence)
 jali_status write_outputs(jali_context *ctx, const output *out, int32_t count)
 {
     jali_status status = JALI_OK;
-    output_file file[MOST_OUTPUTS + OUTPUTS_BESIDE] = {0};
+    output_file file[MOST_FILES] = {0};
     if (!solver_leads()) return JALI_OK;
     for (int32_t i = 0; i < count; i++) TRY(output_open(ctx, out[i].path, &file[i]));
     for (int32_t i = 0; i < count; i++)
@@ -116,6 +116,17 @@ jali_status write_outputs(jali_context *ctx, const output *out, int32_t count)
 done:
     for (int32_t i = 0; i < count; i++) output_abandon(ctx, &file[i]);
     return status;
+}
+
+jali_status without_margin(jali_context *ctx, const jali_bitmap *mask, int32_t margin, jali_bitmap *picture)
+{
+    jali_status status =
+        jali_bitmap_create(ctx, mask->width_px - 2 * margin, mask->height_px - 2 * margin, picture);
+    if (status != JALI_OK) return status;
+    for (int32_t y = 0; y < picture->height_px; y++)
+        for (int32_t x = 0; x < picture->width_px; x++)
+            if (jali_bitmap_get(mask, x + margin, y + margin)) jali_bitmap_set(picture, x, y, true);
+    return JALI_OK;
 }
 
 jali_status write_bitmaps(jali_context *ctx, const settings *set, const jali_bitmap *bitmap, double pixel_mm)

@@ -4,7 +4,11 @@
 
 #include "cli.h"
 
-enum { OUTPUTS_BESIDE = 5 }; // figures, report, render, two maps
+enum {
+    OUTPUTS_BESIDE = 5, // figures, report, render, two maps
+    MOST_LAYERS = 8,
+    MOST_FILES = MOST_OUTPUTS + OUTPUTS_BESIDE + MOST_LAYERS
+};
 
 /// Suffixes the verb knows, no file named twice, none that exists (unless --force-overwrite), none the input.
 ///   out    sentence  what is wrong, when false comes back
@@ -21,6 +25,9 @@ typedef struct output {
 
 /// Write all of them or none: every file is opened and filled before the first gets its name.
 jali_status write_outputs(jali_context *ctx, const output *out, int32_t count);
+
+/// A bitmap without the margin around it.
+jali_status without_margin(jali_context *ctx, const jali_bitmap *mask, int32_t margin, jali_bitmap *picture);
 
 /// Write the same bitmap to every output file of the settings.
 jali_status write_bitmaps(jali_context *ctx, const settings *set, const jali_bitmap *bitmap, double pixel_mm);

@@ -32,6 +32,11 @@ static jali_status decode(jali_context *ctx, const settings *set, const char *na
     if (looks_like_svg(file->data, file->size)) {
         jali_status status;
         jali_bytes pgm = {0};
+        if (files_of(ctx))
+            return fail(ctx, JALI_BAD_INPUT,
+                        "%s is an SVG; to draw it fonts may be needed, and this run opens no files: a PNG is "
+                        "accepted",
+                        name);
         TRY(draw_svg(ctx, file->data, MIN(file->size, max_svg_bytes), name, svg_longer_px(set), &pgm));
         TRY(jali_read_bytes(ctx, pgm.data, pgm.size, name, &set->read, picture));
     done:

@@ -58,13 +58,7 @@ done:
     return status;
 }
 
-// --- jali list printers
-
-static void print_printer(const jali_printer *p)
-{
-    printf("%-16s %-7s phi %5.3g / %4.3g / %4.3g mm  %s\n", p->name, jali_process_name(p->process),
-           jali_printer_phi_e_mm(p), p->phi_s_mm.value, p->phi_v_mm.value, p->what);
-}
+// --- The printers there are
 
 static int is_profile(const struct dirent *entry)
 {
@@ -72,22 +66,21 @@ static int is_profile(const struct dirent *entry)
     return entry->d_name[0] != '.' && dot && strcmp(dot, ".json") == 0;
 }
 
-// The user's own, by name; one that cannot be read says why.
-static jali_status list_own(jali_context *ctx, const char *folder)
+typedef void see_printer(void *user, const char *folder, const char *file, const jali_printer *printer);
+
+// The user's own, by name.
+static jali_status each_own(jali_context *ctx, const char *folder, see_printer *see, void *user)
 {
     jali_status status = JALI_OK;
     struct dirent **entry = NULL;
     int count = scandir(folder, &entry, is_profile, alphasort);
-    if (count > 0) printf("\nin %s:\n", folder);
     for (int i = 0; i < count; i++) {
         jali_printer p;
         jali_bytes path = {0};
         if (status == JALI_OK) status = bytes_print(ctx, &path, "%s/%s%c", folder, entry[i]->d_name, 0);
         if (status == JALI_OK) {
-            if (jali_printer_find(ctx, (const char *)path.data, folder, &p) == JALI_OK)
-                print_printer(&p);
-            else
-                printf("%-16s cannot be read: %s\n", entry[i]->d_name, jali_message(ctx));
+            bool read = jali_printer_find(ctx, (const char *)path.data, folder, &p) == JALI_OK;
+            see(user, folder, entry[i]->d_name, read ? &p : NULL);
         }
         jali_bytes_free(ctx, &path);
         free(entry[i]);
@@ -96,7 +89,7 @@ static jali_status list_own(jali_context *ctx, const char *folder)
     return status;
 }
 
-jali_status list_printers(jali_context *ctx)
+jali_status each_printer(jali_context *ctx, see_printer *see, void *user)
 {
     jali_status status = JALI_OK;
     jali_bytes folder = {0};
@@ -105,11 +98,36 @@ jali_status list_printers(jali_context *ctx)
     for (int32_t i = 0; i < count; i++) {
         jali_printer p;
         TRY(jali_printer_find(ctx, name[i], NULL, &p));
-        print_printer(&p);
+        see(user, NULL, name[i], &p);
     }
     TRY(printers_folder(ctx, &folder));
-    if (folder.size > 0) TRY(list_own(ctx, (const char *)folder.data));
+    if (folder.size > 0) TRY(each_own(ctx, (const char *)folder.data, see, user));
 done:
     jali_bytes_free(ctx, &folder);
     return status;
+}
+
+// --- jali list printers
+
+typedef struct printing {
+    jali_context *ctx;
+    bool own; // their heading is printed
+} printing;
+
+static void print_printer(void *user, const char *folder, const char *file, const jali_printer *p)
+{
+    printing *state = user;
+    if (folder && !state->own) printf("\nin %s:\n", folder);
+    state->own = folder != NULL;
+    if (p)
+        printf("%-16s %-7s phi %5.3g / %4.3g / %4.3g mm  %s\n", p->name, jali_process_name(p->process),
+               jali_printer_phi_e_mm(p), p->phi_s_mm.value, p->phi_v_mm.value, p->what);
+    else
+        printf("%-16s cannot be read: %s\n", file, jali_message(state->ctx));
+}
+
+jali_status list_printers(jali_context *ctx)
+{
+    printing state = {.ctx = ctx};
+    return each_printer(ctx, print_printer, &state);
 }

@@ -64,7 +64,7 @@ void say(const settings *set, const char *format, ...)
     va_end(arguments);
 }
 
-static exit_code exit_code_of(jali_status status)
+exit_code exit_code_of(jali_status status)
 {
     switch (status) {
     case JALI_OK: return EXIT_DONE;

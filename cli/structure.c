@@ -11,7 +11,7 @@
 
 enum { MAP_PX = 1200, RENDER_PX = 640 };
 
-static jali_map_options map_of(const jali_strength *s, jali_quantity quantity)
+jali_map_options map_of(const jali_strength *s, jali_quantity quantity)
 {
     jali_map_options opt = jali_map_defaults();
     opt.quantity = quantity;

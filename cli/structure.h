@@ -9,6 +9,9 @@
 /// Carve a picture and analyse it.
 jali_status analyse_picture(jali_context *ctx, const settings *set);
 
+/// How a map of it is drawn.
+jali_map_options map_of(const jali_strength *s, jali_quantity quantity);
+
 /// Can a map be written under this name?
 bool is_map(const char *path);
 

@@ -37,6 +37,9 @@ typedef struct option {
     const char *help;
 } option;
 
+/// The options of all verbs.
+const option *option_list(int32_t *count);
+
 /// Keep a sentence; false, for handing on.
 bool wrong(char sentence[SENTENCE_BYTES], const char *format, ...) __attribute__((format(printf, 2, 3)));
 

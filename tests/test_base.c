@@ -1,6 +1,9 @@
 // The context: limits, cancelling, the arena, the pool.
 #include "testing.h"
 
+#include "base/file.h"
+#include "base/lines.h"
+
 TEST(arena_gives_back_what_a_stage_took)
 {
     arena_mark mark = arena_here(ctx);
@@ -61,6 +64,42 @@ TEST(bad_context_options_are_refused)
     CHECK(none == NULL);
 }
 
+static bool take_into(void *user, const char *name, const void *data, size_t size)
+{
+    char *text = user;
+    snprintf(text + strlen(text), 64 - strlen(text), "%s:%.*s;", name, (int)size,
+             data ? (const char *)data : "");
+    return strlen(text) < 40;
+}
+
+TEST(a_run_in_memory_opens_no_files)
+{
+    char taken[64] = "";
+    const jali_file file = {"a.txt", "one\ntwo\n", 8};
+    const jali_files files = {1, &file, take_into, taken};
+    jali_context_options opt = jali_context_defaults();
+    jali_context *closed;
+    jali_bytes bytes;
+    lines in;
+    opt.files = &files;
+    CHECK_INT(jali_context_create(&opt, &closed), JALI_OK);
+    CHECK_INT(file_read(closed, "a.txt", 8, &bytes), JALI_OK);
+    CHECK(bytes.size == 8 && memcmp(bytes.data, file.data, 8) == 0 && bytes.data[8] == 0);
+    jali_bytes_free(closed, &bytes);
+    CHECK_INT(file_read(closed, "a.txt", 7, &bytes), JALI_LIMIT);
+    CHECK_INT(file_read(closed, "/etc/passwd", 1000000, &bytes), JALI_IO);
+    CHECK(strstr(jali_message(closed), "/etc/passwd"));
+    CHECK_INT(file_read(closed, "-", 1000000, &bytes), JALI_IO);
+    CHECK(file_exists(closed, "a.txt") && !file_exists(closed, "/etc/passwd"));
+    CHECK_INT(lines_open(closed, "a.txt", &in), JALI_OK);
+    lines_close(closed, &in);
+    CHECK_INT(lines_open(closed, "/etc/passwd", &in), JALI_IO);
+    CHECK_INT(file_write(closed, "/tmp/b.txt", "three", 5), JALI_OK);
+    CHECK(strcmp(taken, "/tmp/b.txt:three;/tmp/b.txt:;") == 0);
+    CHECK_INT(file_write(closed, "c.txt", "four, which is too long", 23), JALI_IO);
+    jali_context_free(closed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -69,6 +108,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(memory_limit_is_a_sentence, open_context, close_context),
         cmocka_unit_test_setup_teardown(cancel_and_timeout_stop_the_next_step, open_context, close_context),
         cmocka_unit_test_setup_teardown(bad_context_options_are_refused, open_context, close_context),
+        cmocka_unit_test_setup_teardown(a_run_in_memory_opens_no_files, open_context, close_context),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

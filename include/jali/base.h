@@ -28,6 +28,22 @@ typedef enum jali_status {
 /// call at a time; several contexts may run side by side.
 typedef struct jali_context jali_context;
 
+/// A file that is in memory.
+typedef struct jali_file {
+    const char *name;
+    const void *data; // [size]
+    size_t size;
+} jali_file;
+
+/// Files in memory in place of the system's, for a run that may open none.
+typedef struct jali_files {
+    int32_t count;
+    const jali_file *file; // [count] all there is to read
+    // Takes what is written, piece by piece; a file is complete with a call that has no data. False: no room.
+    bool (*take)(void *user, const char *name, const void *data, size_t size);
+    void *user;
+} jali_files;
+
 typedef struct jali_context_options {
     int32_t threads;           // worker threads, >= 1; 0 (default) = one a processor. Never changes a result
     uint64_t max_memory_bytes; // refuse to hold more than this; 0 (default) = no limit
@@ -36,6 +52,8 @@ typedef struct jali_context_options {
     void (*release)(void *user, void *block);                         // NULL (default) = free
     void (*progress)(void *user, const char *stage, double fraction); // called on the caller's thread
     void *user;                                                       // handed to the three functions above
+    const jali_files *files; // no file is opened: these are read and written; NULL (default) = the system's.
+                             // Must outlive the context, and may change between calls
 } jali_context_options;
 
 /// The defaults, each explained at its field.

@@ -55,6 +55,10 @@ void arena_rewind(jali_context *ctx, arena_mark mark);
 jali_status arena_take(jali_context *ctx, void *where, size_t count, size_t size);
 #define ARENA(ctx, pointer, count) arena_take((ctx), &(pointer), (size_t)(count), sizeof *(pointer))
 
+/// The files of a run that may open none; NULL: the system's. What opens files asks src/base/file.h and
+/// lines.h.
+const jali_files *files_of(const jali_context *ctx);
+
 /// Call work(shared, i) for i = 0 .. count-1 on the pool's threads. The order is not defined, so each i
 /// writes to a place of its own; `work` allocates nothing. Items, not threads, set the split: any thread
 /// count gives the same result.

@@ -195,6 +195,11 @@ jali_status arena_take(jali_context *ctx, void *where, size_t count, size_t size
     return JALI_OK;
 }
 
+const jali_files *files_of(const jali_context *ctx)
+{
+    return ctx->opt.files;
+}
+
 void parallel(jali_context *ctx, int32_t count, void (*work)(void *shared, int32_t index), void *shared)
 {
     pool_run(ctx->pool, count, work, shared);

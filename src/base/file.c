@@ -3,6 +3,7 @@
 // Writing:  a temporary name in the same folder, fsync, rename, fsync of the folder. Until the rename the
 //           earlier file is untouched; after it the new one is complete. A killed process leaves only *.part
 //           behind.
+// In memory: a run with jali_files opens nothing at all.
 // Limits:   devices and pipes cannot be renamed over, so they are written straight.
 // Checked:  tests/test_write.c: full disk, unwritable folder, cancel, links, modes.
 #include "base/file.h"
@@ -21,6 +22,21 @@ static jali_status refused(jali_context *ctx, const char *verb, const char *name
 {
     char text[128];
     return fail(ctx, JALI_IO, "cannot %s %s: %s", verb, name, strerror_r(reason, text, sizeof text));
+}
+
+const jali_file *file_in_memory(jali_context *ctx, const char *name)
+{
+    const jali_files *files = files_of(ctx);
+    for (int32_t i = 0; i < files->count; i++)
+        if (strcmp(files->file[i].name, name) == 0) return &files->file[i];
+    fail(ctx, JALI_IO, "cannot read %.200s: this run opens no files but those it was given", name);
+    return NULL;
+}
+
+bool file_exists(jali_context *ctx, const char *path)
+{
+    if (files_of(ctx)) return file_in_memory(ctx, path) != NULL;
+    return access(path, F_OK) == 0;
 }
 
 static jali_status copy_text(jali_context *ctx, const char *text, size_t extra, char **copy)
@@ -50,6 +66,8 @@ jali_status output_open(jali_context *ctx, const char *path, output_file *file)
     char resolved[PATH_MAX];
     struct stat old;
     *file = (output_file){.descriptor = -1, .name = path};
+    file->in_memory = files_of(ctx) != NULL;
+    if (file->in_memory) return JALI_OK;
     if (strcmp(path, "-") == 0) {
         file->name = "stdout";
         file->descriptor = STDOUT_FILENO;
@@ -88,6 +106,12 @@ jali_status output_write(jali_context *ctx, output_file *file, const void *data,
     while (size > 0) {
         jali_status status = step(ctx, "write", 0);
         if (status != JALI_OK) return status;
+        if (file->in_memory) {
+            const jali_files *files = files_of(ctx);
+            if (!files->take(files->user, file->name, at, size))
+                return fail(ctx, JALI_IO, "there is no room for %.200s", file->name);
+            return JALI_OK;
+        }
         ssize_t written = write(file->descriptor, at, MIN(size, (size_t)PIECE_BYTES));
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return refused(ctx, "write", file->name, errno);
@@ -116,6 +140,9 @@ static void sync_folder_of(char *path)
 jali_status output_commit(jali_context *ctx, output_file *file)
 {
     jali_status status = JALI_OK;
+    const jali_files *files = files_of(ctx);
+    if (file->in_memory && !files->take(files->user, file->name, NULL, 0))
+        TRY(fail(ctx, JALI_IO, "there is no room for %.200s", file->name));
     if (file->target) {
         if (fsync(file->descriptor) != 0) TRY(refused(ctx, "write", file->name, errno));
         file->open = false;
@@ -151,6 +178,11 @@ done:
     return status;
 }
 
+static jali_status too_large(jali_context *ctx, const char *name, size_t limit_bytes)
+{
+    return fail(ctx, JALI_LIMIT, "%s is larger than the limit of %.0f MB", name, (double)limit_bytes / 1e6);
+}
+
 static jali_status read_descriptor(jali_context *ctx, int descriptor, const char *name, size_t limit_bytes,
                                    jali_bytes *bytes)
 {
@@ -167,9 +199,7 @@ static jali_status read_descriptor(jali_context *ctx, int descriptor, const char
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) TRY(refused(ctx, "read", name, errno));
         bytes->size += (size_t)got;
-        if (bytes->size > limit_bytes)
-            TRY(fail(ctx, JALI_LIMIT, "%s is larger than the limit of %.0f MB", name,
-                     (double)limit_bytes / 1e6));
+        if (bytes->size > limit_bytes) TRY(too_large(ctx, name, limit_bytes));
         if (got == 0) break;
     }
     bytes->data[bytes->size] = 0;
@@ -177,9 +207,23 @@ done:
     return status;
 }
 
+static jali_status copy_file(jali_context *ctx, const char *name, size_t limit_bytes, jali_bytes *bytes)
+{
+    const jali_file *file = file_in_memory(ctx, name);
+    if (!file) return JALI_IO;
+    if (file->size > limit_bytes) return too_large(ctx, name, limit_bytes);
+    jali_status status = bytes_reserve(ctx, bytes, file->size + 1);
+    if (status != JALI_OK) return status;
+    memcpy(bytes->data, file->data, file->size);
+    bytes->size = file->size;
+    bytes->data[bytes->size] = 0;
+    return JALI_OK;
+}
+
 jali_status file_read(jali_context *ctx, const char *path, size_t limit_bytes, jali_bytes *bytes)
 {
     *bytes = (jali_bytes){0};
+    if (files_of(ctx)) return copy_file(ctx, path, limit_bytes, bytes);
     bool standard = strcmp(path, "-") == 0;
     int descriptor = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) return refused(ctx, "read", path, errno);

@@ -8,6 +8,7 @@
 typedef struct output_file {
     int descriptor; // valid while `open`
     bool open;
+    bool in_memory;  // of a run that may open no files: what is written goes to its jali_files
     char *target;    // the file as it will be called, links followed; NULL: written straight (stdout, device)
     char *temporary; // the name it has until it is committed
     const char *name; // as the caller gave it, for sentences; must outlive the file
@@ -30,6 +31,13 @@ void output_abandon(jali_context *ctx, output_file *file);
 
 /// Open, write, commit; abandon on failure.
 jali_status file_write(jali_context *ctx, const char *path, const void *data, size_t size);
+
+/// What a run that may open no files has under this name; NULL: nothing, and a sentence is kept.
+///   fails  JALI_IO
+const jali_file *file_in_memory(jali_context *ctx, const char *name);
+
+/// Is there a file of that name?
+bool file_exists(jali_context *ctx, const char *path);
 
 /// Read a whole file; "-" is stdin.
 ///   in     limit_bytes  larger files are refused

@@ -2,6 +2,7 @@
 //
 // Limits:  of a line the first 4,095 bytes count; `cut` says that there were more.
 // Checked: tests/test_lines.c: every line end, over the border of two pieces, from files and from memory.
+#include "base/file.h"
 #include "base/lines.h"
 
 #include <errno.h>
@@ -21,6 +22,11 @@ jali_status lines_open(jali_context *ctx, const char *path, lines *in)
 {
     jali_status status = JALI_OK;
     struct stat known;
+    if (files_of(ctx)) {
+        const jali_file *file = file_in_memory(ctx, path);
+        if (file) lines_of_bytes(file->data, file->size, path, in);
+        return file ? JALI_OK : JALI_IO;
+    }
     *in = (lines){.name = path};
     in->descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (in->descriptor < 0) return cannot_read(ctx, path, errno);

@@ -10,7 +10,6 @@
 #include "mesh/turn.h"
 
 #include <math.h>
-#include <unistd.h>
 
 static const double largest_mm = 10000;
 
@@ -212,10 +211,10 @@ done:
 }
 
 // The whole of it may be the name of a file, else what stands before the last colon that has an = behind it.
-static const char *keys_of(const char *description)
+static const char *keys_of(jali_context *ctx, const char *description)
 {
     const char *colon = strrchr(description, ':');
-    if (!colon || access(description, F_OK) == 0 || !strchr(colon, '=')) return NULL;
+    if (!colon || file_exists(ctx, description) || !strchr(colon, '=')) return NULL;
     return colon + 1;
 }
 
@@ -228,10 +227,10 @@ jali_status jali_surface_open(jali_context *ctx, const char *description, const 
     *surface = (jali_surface){0};
     if (report) *report = (jali_surface_report){0};
     bool like_a_file =
-        strpbrk(description, "./") || access(description, F_OK) == 0 || strcmp(description, "-") == 0;
+        strpbrk(description, "./") || file_exists(ctx, description) || strcmp(description, "-") == 0;
     if (shape_named(description) >= 0 || !like_a_file)
         return jali_surface_make(ctx, description, &opt, surface);
-    const char *keys = keys_of(description);
+    const char *keys = keys_of(ctx, description);
     size_t length = keys ? (size_t)(keys - 1 - description) : strlen(description);
     if (keys) TRY(take_keys(ctx, keys, &opt));
     TRY(ALLOCATE(ctx, path, length + 1));

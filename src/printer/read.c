@@ -44,14 +44,6 @@ static jali_status open_file(jali_context *ctx, profile_file *f)
     return file_read(ctx, text_of(f), MOST_PROFILE_BYTES, &f->bytes);
 }
 
-// Is there a file of that name that can be read?
-static bool is_there(const char *path)
-{
-    FILE *file = fopen(path, "rb");
-    if (file) fclose(file);
-    return file != NULL;
-}
-
 static jali_status no_such_printer(jali_context *ctx, const char *name)
 {
     int32_t count;
@@ -68,7 +60,7 @@ static jali_status open_name(jali_context *ctx, const char *name, const char *fo
     if (folder) {
         TRY(bytes_print(ctx, &f->name, "%s/%s.json", folder, name));
         TRY(bytes_append(ctx, &f->name, "", 1));
-        if (is_there(text_of(f))) return open_file(ctx, f);
+        if (file_exists(ctx, text_of(f))) return open_file(ctx, f);
         f->name.size = 0;
     }
     TRY(bytes_print(ctx, &f->name, "<%s>", name));

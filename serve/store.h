@@ -1,0 +1,18 @@
+// Uploads: kept until there is no room, the one not used for longest goes first.
+#ifndef SERVE_STORE_H
+#define SERVE_STORE_H
+
+#include "serve.h"
+
+/// Room for an upload of so many bytes; others may have to go for it. NULL: there is none, even so.
+blob *store_room(server *s, size_t bytes);
+
+/// Keep an upload (it is taken). False: no randomness.
+bool store_keep(server *s, blob *bytes, char id[TOKEN_BYTES]);
+
+/// Hold an upload; NULL: there is none of that name.
+blob *store_find(server *s, const char *id);
+
+void store_free(server *s);
+
+#endif
