@@ -1,19 +1,23 @@
 // The server's HTTP interface (docs/serve.md), and nothing else of it.
 
 const BASE = "/api/v1";
-const token = takeToken();
+const given = takeGiven();
+const token = given.token ?? sessionStorage.getItem("jali-token") ?? "";
+if (given.token) sessionStorage.setItem("jali-token", given.token);
 
-// The token comes in the address once; it is kept for this tab and taken out of the address.
-function takeToken() {
-    const given = new URLSearchParams(location.hash.slice(1)).get("token");
-    if (given) {
-        sessionStorage.setItem("jali-token", given);
-        const rest = new URLSearchParams(location.hash.slice(1));
-        rest.delete("token");
-        history.replaceState(null, "", `${location.pathname}#${rest}`);
+// What the program put into the address: the token, and the picture of its command line. Both are taken out.
+function takeGiven() {
+    const parts = new URLSearchParams(location.hash.slice(1)), found = {};
+    for (const key of ["token", "picture", "name"]) {
+        if (parts.has(key)) found[key] = parts.get(key);
+        parts.delete(key);
     }
-    return given ?? sessionStorage.getItem("jali-token") ?? "";
+    history.replaceState(null, "", `${location.pathname}#${parts}`);
+    return found;
 }
+
+/** The picture that was named on the command line, {id, name}, or null. */
+export const givenPicture = () => (given.picture ? { id: given.picture, name: given.name ?? "picture" } : null);
 
 /** What the server refused, with its own sentence. */
 export class Refusal extends Error {}
@@ -25,15 +29,14 @@ async function call(path, options = {}) {
     });
     if (response.ok) return response;
     const answer = await response.json().catch(() => ({}));
-    throw new Refusal(answer.error ?? `${response.status} ${response.statusText}`);
+    throw new Refusal(answer.error?.message ?? `${response.status} ${response.statusText}`);
 }
 
 export const lists = () => call("/lists").then((r) => r.json());
 export const sample = (name) => call(`/samples/${encodeURIComponent(name)}.png`).then((r) => r.blob());
 
-export async function upload(blob, name, signal) {
-    const query = new URLSearchParams({ name });
-    const response = await call(`/uploads?${query}`, {
+export async function upload(blob, signal) {
+    const response = await call("/uploads", {
         method: "POST", body: blob, signal, headers: { "Content-Type": "application/octet-stream" },
     });
     return (await response.json()).id;

@@ -4,6 +4,7 @@ import { make, freshId } from "./dom.js";
 import { change, state } from "./state.js";
 import { text } from "./strings.js";
 
+let found = 128; // the threshold that the last run chose by itself
 const updates = []; // each brings one control up to date with the state
 
 function slider(key, words, { min, max, step, unit, show }) {
@@ -48,7 +49,7 @@ function threshold() {
     updates.push((s) => {
         automatic.checked = s.threshold === "auto";
         range.disabled = box.disabled = automatic.checked;
-        if (!automatic.checked) range.value = box.value = s.threshold;
+        range.value = box.value = automatic.checked ? found : s.threshold;
     });
     return make("div", { class: "field" }, make("label", { for: id }, text("threshold")),
         make("span", { class: "pair" }, range, box), make("label", { class: "check" }, automatic, text("auto")));
@@ -86,7 +87,7 @@ function printerGroup(lists) {
 }
 
 function surfaceGroup() {
-    const round = (s) => s.surface !== "plate" && s.surface !== "model";
+    const round = (s) => s.surface !== "plate";
     return group("surface",
         menu("surface", "surface", ["plate", "cylinder", "vase", "cone", "sphere"].map((name) => [name, text(name)])),
         slider("radius", "radius", { min: 10, max: 150, step: 1, unit: "mm", show: round }),
@@ -108,4 +109,10 @@ export function showControls(form, lists, takeFile, takeSample) {
 
 export function updateControls() {
     for (const update of updates) update(state());
+}
+
+/** Show the threshold that a run has found. */
+export function showThreshold(level) {
+    found = level;
+    updateControls();
 }

@@ -4,14 +4,15 @@
 // key, so the server stops the one before: the newest wins.
 
 import * as api from "./api.js";
-import { showControls, updateControls } from "./controls.js";
+import { showControls, showThreshold, updateControls } from "./controls.js";
 import { PictureView } from "./picture-view.js";
 import { SolidView } from "./solid-view.js";
 import { showResults } from "./results.js";
 import { canRedo, canUndo, change, commandLine, onChange, options, readAddress, redo, state, undo } from "./state.js";
 import { fillWords, language, setLanguage, text } from "./strings.js";
 
-const PREVIEW_AFTER_MS = 40, WHOLE_AFTER_MS = 350;
+const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "errors.png", "object.stl"];
+const PREVIEW_AFTER_MS = 40, WHOLE_AFTER_MS = 350, SVG_PX = 2000;
 const $ = (id) => document.getElementById(id);
 const client = crypto.randomUUID();
 
@@ -20,9 +21,9 @@ const pictureView = new PictureView(stage, $("legend"));
 const solidView = new SolidView(stage);
 
 let lists;
-let picture = null; // {id, name, blob}
+let picture = null; // {id, name}
 let figures = null;
-let lastJob = null; // the whole run whose files can be had
+let last = null; // the whole run that is shown: {id, request, files}
 let running = null; // AbortController of the present run
 let timers = [];
 
@@ -37,9 +38,25 @@ function fail(error) {
 
 // --- Pictures
 
+// An SVG is drawn here: the program's shut-in processes load no fonts.
+async function drawn(blob) {
+    const image = new Image();
+    image.src = URL.createObjectURL(blob);
+    await image.decode();
+    const width = image.naturalWidth || 1000, height = image.naturalHeight || 1000, scale = SVG_PX / Math.max(width, height);
+    const canvas = new OffscreenCanvas(Math.round(width * scale), Math.round(height * scale));
+    const context = canvas.getContext("2d");
+    context.fillStyle = "#fff";
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    URL.revokeObjectURL(image.src);
+    return canvas.convertToBlob({ type: "image/png" });
+}
+
 async function take(blob, name) {
     say("uploading");
-    picture = { id: await api.upload(blob, name), name, blob };
+    const bytes = blob.type === "image/svg+xml" ? await drawn(blob) : blob;
+    picture = { id: await api.upload(bytes), name };
     plan();
 }
 
@@ -69,7 +86,7 @@ async function follow(id, signal) {
     for await (const event of api.events(id, signal)) {
         if (event.type === "progress") say("working", { stage: event.stage });
         if (event.type === "done") return event;
-        if (event.type === "failed") throw new api.Refusal(event.error);
+        if (event.type === "failed") throw new api.Refusal(event.message);
     }
     throw new TypeError("the events ended early");
 }
@@ -78,32 +95,32 @@ async function bitmapOf(id, name, signal) {
     return createImageBitmap(await (await api.file(id, name, signal)).blob());
 }
 
-async function showPictures(id, signal) {
-    const [input, mask, print] = await Promise.all(["input.png", "mask.png", "print.png"].map((name) => bitmapOf(id, name, signal)));
-    pictureView.show({ input, mask, print });
+async function showPictures(id, signal, errors) {
+    const names = ["input.png", "mask.png", ...(errors ? ["errors.png"] : [])];
+    const [input, mask, wrong] = await Promise.all(names.map((name) => bitmapOf(id, name, signal)));
+    pictureView.show({ input, mask, wrong });
 }
 
 async function preview(signal) {
     const wanted = options();
-    delete wanted.force;
-    delete wanted.nudge;
-    const id = await api.start({ picture: picture.id, verb: "adapt", options: wanted, client: `${client}-preview`,
-        files: ["input.png", "mask.png", "print.png"] }, signal);
+    for (const key of ["force", "material", "nudge", "thickness"]) delete wanted[key];
+    const id = await api.start({ picture: picture.id, name: picture.name, verb: "adapt",
+        options: { ...wanted, "no-predict": true }, client: `${client}-preview`, files: ["input.png", "mask.png"] }, signal);
     await follow(id, signal);
-    await showPictures(id, signal);
+    await showPictures(id, signal, false);
 }
 
 async function whole(signal) {
-    const files = ["figures.json", "input.png", "mask.png", "print.png", "object.stl", "object.3mf", "report.html"];
     const flat = state().surface === "plate";
-    if (flat) files.push("outline.svg", "outline.dxf");
-    const id = await api.start({ picture: picture.id, verb: "carve", options: options(), client: `${client}-whole`, files }, signal);
+    const request = { picture: picture.id, name: picture.name, verb: "carve", options: options() };
+    const id = await api.start({ ...request, client: `${client}-whole`, files: WHOLE_FILES }, signal);
     await follow(id, signal);
     figures = await (await api.file(id, "figures.json", signal)).json();
-    lastJob = id;
+    showThreshold(figures.input.threshold);
+    last = { id, request, files: new Set(WHOLE_FILES) };
     showFigures();
     say("done", { seconds: figures.seconds.total.toFixed(2) });
-    await showPictures(id, signal);
+    await showPictures(id, signal, true);
     solidView.show(await (await api.file(id, "object.stl", signal)).arrayBuffer(), flat);
 }
 
@@ -123,8 +140,17 @@ function showFigures() {
     if (figures) showResults($("results"), figures, lists.materials, state().material, (name) => download(name).catch(fail));
 }
 
+// Files that were not made yet are made when they are wanted: the same request gives the same bytes.
+async function fileOf(run, name) {
+    if (run.files.has(name)) return (await api.file(run.id, name)).blob();
+    const id = await api.start({ ...run.request, client: `${client}-${name}`, files: [name] });
+    await follow(id);
+    return (await api.file(id, name)).blob();
+}
+
 async function download(name) {
-    const blob = await (await api.file(lastJob, name)).blob();
+    const blob = await fileOf(last, name);
+    say("ready", { name: name.slice(name.lastIndexOf(".") + 1).toUpperCase() });
     const link = document.createElement("a");
     link.href = URL.createObjectURL(blob);
     link.download = picture.name.replace(/\.\w+$/, "") + name.slice(name.lastIndexOf("."));
@@ -199,8 +225,11 @@ async function begin() {
     showWords();
     listen();
     selectView("picture");
-    if (lists.picture) { change({ sample: "" }); picture = lists.picture; plan(); } // named on the command line
-    else if (state().sample) await takeSample(state().sample);
+    if (api.givenPicture()) {
+        change({ sample: "" });
+        picture = api.givenPicture();
+        plan();
+    } else if (state().sample) await takeSample(state().sample);
     else say("waiting");
 }
 

@@ -35,7 +35,7 @@ export class PictureView {
         this.legend = legend;
         this.split = 0.5;
         this.overlay = "none";
-        this.layers = null; // input, mask, print as ImageData
+        this.layers = null; // input, mask, wrong as bytes
         this.view = { scale: 1, x: 0, y: 0 };
         this.canvas = make("canvas", { class: "picture" });
         this.handle = make("input", { type: "range", class: "handle", min: 0, max: 100, value: 50, step: 1, "aria-label": text("handle") });
@@ -68,7 +68,11 @@ export class PictureView {
             this.zoom(Math.exp(-event.deltaY * 0.0015), event.offsetX, event.offsetY);
         }, { passive: false });
         const held = new Map();
-        this.canvas.addEventListener("pointerdown", (event) => { this.canvas.setPointerCapture(event.pointerId); held.set(event.pointerId, event); });
+        this.canvas.addEventListener("pointerdown", (event) => {
+            this.canvas.setPointerCapture(event.pointerId);
+            event.onHandle = Math.abs(event.offsetX - this.split * this.root.clientWidth) < 20;
+            held.set(event.pointerId, event);
+        });
         this.canvas.addEventListener("pointermove", (event) => {
             const last = held.get(event.pointerId);
             if (!last) return;
@@ -79,8 +83,13 @@ export class PictureView {
         this.canvas.addEventListener("dblclick", () => { this.view = { scale: 1, x: 0, y: 0 }; this.draw(); });
     }
 
-    // One finger moves, two come nearer and move.
+    // On the handle one finger moves it, elsewhere the picture; two come nearer.
     drag(held, last, now) {
+        if (held.size === 1 && last.onHandle) {
+            now.onHandle = true;
+            this.setSplit(Math.min(Math.max(now.offsetX / this.root.clientWidth, 0), 1));
+            return;
+        }
         if (held.size === 2) {
             const other = [...held.values()].find((e) => e.pointerId !== now.pointerId);
             const before = Math.hypot(last.offsetX - other.offsetX, last.offsetY - other.offsetY);
@@ -105,24 +114,25 @@ export class PictureView {
         this.draw();
     }
 
-    /** Show a run's pictures: ImageBitmaps of the same area; print may be missing. */
-    show({ input, mask, print }) {
+    /** Show a run's pictures: ImageBitmaps of the same area; `wrong`, coloured, may be missing. */
+    show({ input, mask, wrong }) {
         const shrink = Math.min(1, MOST_PX / Math.max(mask.width, mask.height));
         const width = Math.max(1, Math.round(mask.width * shrink)), height = Math.max(1, Math.round(mask.height * shrink));
         this.layers = { width, height, input: bits(input, width, height).data, mask: bits(mask, width, height).data,
-            print: print ? bits(print, width, height).data : null };
+            wrong: wrong ? bits(wrong, width, height).data : null };
         this.paint();
     }
 
     paint() {
         if (!this.layers) return;
-        const { width, height, input, mask, print } = this.layers;
+        const { width, height, input, mask, wrong } = this.layers;
         const plain = (data) => (p) => (data[p] > 127 ? SOLID : VOID);
-        const differ = (data, gone, come) => (p) => {
-            const was = input[p] > 127, is = data[p] > 127;
-            return was === is ? (is ? SOLID : VOID) : is ? come : gone;
+        const coloured = (p) => [wrong[p], wrong[p + 1], wrong[p + 2]];
+        const changed = (p) => {
+            const was = input[p] > 127, is = mask[p] > 127;
+            return was === is ? (is ? SOLID : VOID) : is ? ADDED : OPENED;
         };
-        const after = { none: plain(mask), error: differ(print ?? mask, MISSING, EXCESS), change: differ(mask, OPENED, ADDED) }[this.overlay];
+        const after = { none: plain(mask), error: wrong ? coloured : plain(mask), change: changed }[this.overlay];
         this.before = compose(width, height, plain(input));
         this.after = compose(width, height, after);
         this.showLegend();
@@ -146,7 +156,7 @@ export class PictureView {
         if (!this.before) return;
         const context = this.canvas.getContext("2d");
         const fit = 0.94 * Math.min(width / this.before.width, height / this.before.height) * this.view.scale;
-        const left = (width - this.before.width * fit) / 2 * 1 + this.view.x, top = (height - this.before.height * fit) / 2 + this.view.y;
+        const left = (width - this.before.width * fit) / 2 + this.view.x, top = (height - this.before.height * fit) / 2 + this.view.y;
         context.scale(ratio, ratio);
         context.imageSmoothingEnabled = fit * ratio < 2;
         const place = [left, top, this.before.width * fit, this.before.height * fit];

@@ -74,7 +74,7 @@ export class SolidView {
         const box = new Box3().setFromObject(this.mesh);
         this.ball = box.getBoundingSphere(new Sphere());
         this.lamp.position.copy(this.ball.center);
-        if (this.flat !== flat || !this.shown) this.look(flat ? new Vector3(0.25, -0.45, 1) : new Vector3(0.35, -1, 0.35));
+        if (this.flat !== flat || !this.shown) this.look(flat ? new Vector3(0.1, -0.5, 1) : new Vector3(0.35, -1, 0.35));
         this.flat = flat;
         this.shown = true;
         this.resize();
