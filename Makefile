@@ -13,6 +13,7 @@ FUZZ_PACKAGES     := clang libclang-rt-dev
 JUDGE_PACKAGES    := admesh prusa-slicer calculix-ccx
 LINT_PACKAGES     := clang-format clang-tidy cppcheck
 COVERAGE_PACKAGES := gcovr
+PAGE_PACKAGES     := chromium
 
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 JOBS := $(shell nproc)
@@ -21,7 +22,7 @@ BENCH ?=
 # The thread sanitizer of gcc 12 cannot start under more than 28 bits of address randomisation.
 FIXED_ADDRESSES := $(shell setarch -R true 2>/dev/null && echo setarch -R)
 
-.PHONY: all demo test packages release dev thread coverage judge bench results fuzz pictures docs format lint clean
+.PHONY: all page demo test packages release dev thread coverage judge bench results fuzz pictures docs format lint clean
 all: release
 
 # apt is asked only when a package is missing, so that a second run needs no network.
@@ -45,7 +46,9 @@ release dev thread: packages
 demo: release
 	@tools/demo.sh build/release/jali out/demo
 
+# The page is tried in a browser where there is a Node for it.
 test: thread release dev
+	$(if $(shell node -p 'Number(process.versions.node.split(".")[0]) >= 20 || ""' 2>/dev/null),$(call install,$(PAGE_PACKAGES)))
 	@$(FIXED_ADDRESSES) ctest --preset thread --no-label-summary -j $(JOBS)
 	@ctest --preset release --no-label-summary -j $(JOBS)
 	@ctest --preset dev --no-label-summary -j $(JOBS)
@@ -63,6 +66,10 @@ fuzz: packages
 	@cmake --preset fuzz >/dev/null
 	@cmake --build --preset fuzz -j $(JOBS)
 	@tools/fuzz.sh build/fuzz build/corpus $(FUZZ_SECONDS)
+
+# The page anew from web/src; what is committed serves those without Node.
+page:
+	@cd web && { [ -d node_modules/esbuild ] || npm ci --no-audit --no-fund --silent; } && npm run -s build
 
 coverage: packages
 	$(call install,$(COVERAGE_PACKAGES))

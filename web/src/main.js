@@ -17,7 +17,7 @@ const $ = (id) => document.getElementById(id);
 const client = crypto.randomUUID();
 
 const stage = $("stage");
-const pictureView = new PictureView(stage, $("legend"));
+const pictureView = new PictureView(stage, $("legend"), $("bar"));
 const solidView = new SolidView(stage);
 
 let lists;
@@ -167,7 +167,7 @@ function selectView(name) {
         tab.tabIndex = kind === name ? 0 : -1;
     }
     pictureView.root.hidden = name !== "picture";
-    $("legend").hidden = name !== "picture";
+    $("legend").hidden = pictureView.chooser.hidden = name !== "picture";
     solidView.root.hidden = name !== "solid";
     if (name === "solid") solidView.resize();
     else pictureView.draw();

@@ -31,7 +31,7 @@ function compose(width, height, colour) {
 }
 
 export class PictureView {
-    constructor(stage, legend) {
+    constructor(stage, legend, bar) {
         this.legend = legend;
         this.split = 0.5;
         this.overlay = "none";
@@ -40,8 +40,9 @@ export class PictureView {
         this.canvas = make("canvas", { class: "picture" });
         this.handle = make("input", { type: "range", class: "handle", min: 0, max: 100, value: 50, step: 1, "aria-label": text("handle") });
         this.chooser = make("select", { "aria-label": text("overlay"), class: "overlay" });
-        this.root = make("div", { class: "fill" }, this.canvas, this.handle, this.chooser);
+        this.root = make("div", { class: "fill" }, this.canvas, this.handle);
         stage.append(this.root);
+        bar.append(this.chooser);
         this.listen();
         new ResizeObserver(() => this.draw()).observe(stage);
         this.words();
