@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { LONGEST_SUFFIX = 8 };
+enum { LONGEST_SUFFIX = 8, LIST_BYTES = 96 };
 
 const char *suffix_of(const verb *v, const char *path)
 {
@@ -38,13 +38,26 @@ static bool same_file(const char *a, const char *b)
            one.st_ino == other.st_ino;
 }
 
+// ".3mf.stl" as ".3mf, .stl".
+static void list_suffixes(const char *suffixes, char list[LIST_BYTES])
+{
+    size_t at = 0;
+    for (const char *c = suffixes; *c && at + 4 < LIST_BYTES; c++) {
+        if (*c == '.' && c > suffixes) at += (size_t)snprintf(list + at, LIST_BYTES - at, ", ");
+        list[at++] = *c;
+    }
+    list[at] = 0;
+}
+
 static bool check_output(const verb *v, const settings *set, const char *path, char *sentence)
 {
     struct stat old;
+    char list[LIST_BYTES];
     bool standard = strcmp(path, "-") == 0;
+    list_suffixes(v->suffixes, list);
     if (!standard && !knows_suffix(v, suffix_of(v, path)))
         snprintf(sentence, SENTENCE_BYTES, "%s: jali %s does not write this type; it writes %s", path,
-                 v->name, v->suffixes);
+                 v->name, list);
     else if (standard && isatty(STDOUT_FILENO))
         snprintf(sentence, SENTENCE_BYTES, "stdout is a terminal; send it to a file or a program");
     else if (!standard && set->operand && same_file(path, set->operand))

@@ -484,7 +484,7 @@ TEST(a_picture_that_cannot_be_carved_is_a_sentence)
     run("carve rings.png -o old.3mf --force-overwrite --timeout 0.001", 5, "time limit");
     run("carve rings.png -o old.3mf", 2, "--force-overwrite replaces it");
     run("carve rings.png -o old.3mf -o full.stl --force-overwrite --frame 0 --hole 3", 2, "frame");
-    run("carve rings.png -o a.obj", 2, "it writes .3mf.stl.svg.dxf.png");
+    run("carve rings.png -o a.obj", 2, "it writes .3mf, .stl, .svg, .dxf, .png");
     run("carve rings.png -o a.3mf --kernels 1,2", 2, "omega_c,omega_w,omega_b");
     char kept[TEXT_BYTES];
     read_text("old.3mf", kept);
