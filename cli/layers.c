@@ -45,12 +45,21 @@ static jali_status conflicts_png(jali_context *ctx, const made *m, jali_bytes *p
     return on_grid_png(ctx, m, &m->result[0].optimised.conflict, png);
 }
 
+static jali_status no_prediction(jali_context *ctx)
+{
+    return fail(ctx, JALI_BAD_VALUE, "this file shows the predicted print, and no-predict leaves that out");
+}
+
+static jali_status print_png(jali_context *ctx, const made *m, jali_bytes *png)
+{
+    if (!m->set[0].make.predict) return no_prediction(ctx);
+    return jali_bitmap_png(ctx, &m->result[0].result_print.printed, 0, png);
+}
+
 static jali_status errors_png(jali_context *ctx, const made *m, jali_bytes *png)
 {
     const jali_result *r = &m->result[0];
-    if (!m->set[0].make.predict)
-        return fail(ctx, JALI_BAD_VALUE,
-                    "errors.png shows the predicted print, and no-predict leaves it out");
+    if (!m->set[0].make.predict) return no_prediction(ctx);
     return jali_error_map(ctx, &r->input, &r->result_print.printed, MOST_ERROR_PX, png);
 }
 
@@ -113,13 +122,10 @@ static jali_status displacement_bin(jali_context *ctx, const made *m, jali_bytes
 }
 
 static const layer layers[] = {
-    {"input.png", false, input_png},
-    {"bridges.png", false, bridges_png},
-    {"conflicts.png", true, conflicts_png},
-    {"errors.png", false, errors_png},
-    {"mesh.bin", false, mesh_bin},
-    {"stress.bin", false, stress_bin},
-    {"displacement.bin", false, displacement_bin},
+    {"input.png", false, input_png},        {"bridges.png", false, bridges_png},
+    {"conflicts.png", true, conflicts_png}, {"print.png", false, print_png},
+    {"errors.png", false, errors_png},      {"mesh.bin", false, mesh_bin},
+    {"stress.bin", false, stress_bin},      {"displacement.bin", false, displacement_bin},
 };
 
 const layer *layer_list(int32_t *count)

@@ -43,8 +43,8 @@ static enum MHD_Result answer_version(server *s, struct MHD_Connection *connecti
 
 static enum MHD_Result answer_lists(server *s, struct MHD_Connection *connection, exchange *e)
 {
-    (void)s, (void)e;
-    return lists_reply(connection);
+    (void)e;
+    return lists_reply(s, connection);
 }
 
 static enum MHD_Result answer_sample(server *s, struct MHD_Connection *connection, exchange *e)
@@ -57,8 +57,11 @@ static enum MHD_Result answer_sample(server *s, struct MHD_Connection *connectio
 static enum MHD_Result answer_upload(server *s, struct MHD_Connection *connection, exchange *e)
 {
     char id[TOKEN_BYTES];
-    blob *bytes = e->body;
-    if (!store_keep(s, bytes, id))
+    char name[3 * MOST_NAME_BYTES + 1] = "";
+    const char *given = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "name");
+    snprintf(name, sizeof name, "%s", given ? given : "");
+    MHD_http_unescape(name);
+    if (!store_keep(s, e->body, name, id))
         return reply_error(connection, MHD_HTTP_INTERNAL_SERVER_ERROR, "the system has no random numbers");
     e->body = NULL;
     return reply_json(connection, MHD_HTTP_CREATED,

@@ -24,6 +24,7 @@ static const job_file files[] = {
     {"input.png", "image/png", BY_LAYER, 0},
     {"bridges.png", "image/png", BY_LAYER, 0},
     {"conflicts.png", "image/png", BY_LAYER, 0},
+    {"print.png", "image/png", BY_LAYER, 0},
     {"errors.png", "image/png", BY_LAYER, 0},
     {"mesh.bin", "application/octet-stream", BY_LAYER, 0},
     {"stress.bin", "application/octet-stream", BY_LAYER, 0},

@@ -204,7 +204,7 @@ json_t *job_json(const server *s, const task *t)
     }
     if (finished(t)) {
         json_object_set_new(state, "exit", json_integer(t->exit));
-        json_object_set_new(state, "message", json_string(t->message));
+        json_object_set_new(state, t->state == JOB_DONE ? "message" : "error", json_string(t->message));
         json_object_set_new(state, "files", files_of_task(t));
     }
     return state;

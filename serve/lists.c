@@ -1,6 +1,7 @@
 // What there is to choose from: printers, surfaces, materials, samples, options, files.
 #include "lists.h"
 #include "reply.h"
+#include "store.h"
 #include "values.h"
 
 #include <jali/png.h>
@@ -99,13 +100,24 @@ static jali_context *small_context(void)
     return jali_context_create(&opt, &ctx) == JALI_OK ? ctx : NULL;
 }
 
-enum MHD_Result lists_reply(struct MHD_Connection *connection)
+// What the command line named, for as long as it is kept.
+static json_t *named_picture(server *s)
+{
+    char name[MOST_NAME_BYTES + 1];
+    blob *bytes = *s->picture ? store_find(s, s->picture, name) : NULL;
+    if (!bytes) return json_null();
+    blob_let_go(bytes);
+    return json_pack("{s:s, s:s}", "id", s->picture, "name", name);
+}
+
+enum MHD_Result lists_reply(server *s, struct MHD_Connection *connection)
 {
     jali_context *ctx = small_context();
-    json_t *all = ctx ? json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o}", "version", 1, "printers",
-                                  printers(ctx), "surfaces", surfaces(), "materials", materials(), "samples",
-                                  samples(), "options", options(), "files", file_names())
-                      : NULL;
+    json_t *all =
+        ctx ? json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "version", 1, "picture", named_picture(s),
+                        "printers", printers(ctx), "surfaces", surfaces(), "materials", materials(),
+                        "samples", samples(), "options", options(), "files", file_names())
+            : NULL;
     jali_context_free(ctx);
     return reply_json(connection, MHD_HTTP_OK, all);
 }

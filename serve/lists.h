@@ -4,7 +4,7 @@
 
 #include "serve.h"
 
-enum MHD_Result lists_reply(struct MHD_Connection *connection);
+enum MHD_Result lists_reply(server *s, struct MHD_Connection *connection);
 
 /// A sample as a PNG of so many pixels a side.
 ///   in     file   NAME.png

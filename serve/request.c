@@ -63,11 +63,12 @@ static bool text_of(reading *r, const char *key, size_t most_bytes, const char *
 static bool read_uploads(reading *r)
 {
     const char *picture, *mesh;
+    char mesh_name[MOST_NAME_BYTES + 1];
     if (!text_of(r, "picture", TOKEN_BYTES, &picture) || !text_of(r, "mesh", TOKEN_BYTES, &mesh))
         return false;
     if (!picture) return refuse(r, MHD_HTTP_BAD_REQUEST, "a job needs a \"picture\": the id of an upload");
-    r->t->picture = store_find(r->s, picture);
-    if (mesh) r->t->mesh = store_find(r->s, mesh);
+    r->t->picture = store_find(r->s, picture, r->t->picture_name);
+    if (mesh) r->t->mesh = store_find(r->s, mesh, mesh_name);
     if (!r->t->picture)
         return refuse(r, MHD_HTTP_NOT_FOUND, "there is no upload \"%s\"; send it again", picture);
     if (mesh && !r->t->mesh)
@@ -75,21 +76,11 @@ static bool read_uploads(reading *r)
     return true;
 }
 
-// How the picture is called in sentences and titles: no path, and not what the worker's other files are
-// called.
-static bool read_names(reading *r)
+static bool read_client(reading *r)
 {
-    static const char *const taken[] = {"", "-", "model.mesh", "printer.json"};
-    const char *client, *name;
-    if (!text_of(r, "client", MOST_CLIENT_BYTES, &client) || !text_of(r, "name", MOST_NAME_BYTES, &name))
-        return false;
-    for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
-        if (name && strcmp(name, taken[i]) == 0) name = NULL;
-    for (const char *c = name; c && *c; c++)
-        if ((unsigned char)*c < 32 || *c == '/' || *c == 127)
-            return refuse(r, MHD_HTTP_BAD_REQUEST, "\"name\" is a file's name, without a folder");
+    const char *client;
+    if (!text_of(r, "client", MOST_CLIENT_BYTES, &client)) return false;
     if (client) snprintf(r->t->client, sizeof r->t->client, "%s", client);
-    snprintf(r->t->picture_name, sizeof r->t->picture_name, "%s", name ? name : "picture");
     return true;
 }
 
@@ -202,7 +193,7 @@ static bool read_all(reading *r, const blob *body)
     if (!r->root)
         return refuse(r, MHD_HTTP_BAD_REQUEST, "this is no JSON: line %d: %.200s", error.line, error.text);
     if (!json_is_object(r->root)) return refuse(r, MHD_HTTP_BAD_REQUEST, "a job is a JSON object");
-    if (!known_keys(r) || !read_names(r) || !read_files(r) || !read_uploads(r) || !read_options(r) ||
+    if (!known_keys(r) || !read_client(r) || !read_files(r) || !read_uploads(r) || !read_options(r) ||
         !read_printer(r))
         return false;
     r->t->request = json_dumps(r->worker, JSON_COMPACT);

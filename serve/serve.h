@@ -39,6 +39,7 @@ enum {
 
 typedef struct upload {
     char id[TOKEN_BYTES];
+    char name[MOST_NAME_BYTES + 1]; // of its file
     blob *bytes;
     uint64_t used; // the server's clock when it was last
 } upload;
@@ -82,7 +83,8 @@ typedef struct server {
     int port;
     char token[TOKEN_BYTES];
     const settings *set;
-    int wake; // an eventfd: the main thread shall look
+    int wake;                  // an eventfd: the main thread shall look
+    char picture[TOKEN_BYTES]; // the upload that the command line named; "" = none
 
     pthread_mutex_t lock;
     pthread_cond_t changed;

@@ -13,7 +13,6 @@
 #include "base/file.h"
 
 #include <arpa/inet.h>
-#include <ctype.h>
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -76,35 +75,30 @@ static jali_status open_socket(jali_context *ctx, server *s, int *out)
     return JALI_OK;
 }
 
-static void print_encoded(const char *text)
-{
-    for (; *text; text++) printf(isalnum((unsigned char)*text) ? "%c" : "%%%02X", (unsigned char)*text);
-}
-
-// The picture of the command line, as if the page had sent it; the address says which it is.
-static jali_status print_address(jali_context *ctx, server *s)
+// The picture of the command line, as if the page had sent it.
+static jali_status keep_picture(jali_context *ctx, server *s)
 {
     jali_status status = JALI_OK;
     jali_bytes file = {0};
     blob *room;
-    char id[TOKEN_BYTES] = "";
-    if (s->set->operand) {
-        TRY(file_read(ctx, s->set->operand, MOST_UPLOAD_BYTES, &file));
-        room = store_room(s, file.size);
-        if (!room || !blob_append(room, file.data, file.size) || !store_keep(s, room, id))
-            TRY(fail(ctx, JALI_NO_MEMORY, "no room for %s", s->set->operand));
+    if (!s->set->operand) return JALI_OK;
+    TRY(file_read(ctx, s->set->operand, MOST_UPLOAD_BYTES, &file));
+    room = store_room(s, file.size);
+    if (!room || !blob_append(room, file.data, file.size) ||
+        !store_keep(s, room, name_of(s->set->operand), s->picture)) {
+        blob_let_go(room);
+        status = fail(ctx, JALI_NO_MEMORY, "no room for %s", s->set->operand);
     }
-    printf("http://127.0.0.1:%d/#token=%s", s->port, s->token);
-    if (*id) {
-        printf("&picture=%s&name=", id);
-        print_encoded(name_of(s->set->operand));
-    }
-    printf("\n");
-    fflush(stdout);
-    say(s->set, "open this address in a browser of this machine; Ctrl-C ends it");
 done:
     jali_bytes_free(ctx, &file);
     return status;
+}
+
+static void print_address(const server *s)
+{
+    printf("http://127.0.0.1:%d/#token=%s\n", s->port, s->token);
+    fflush(stdout);
+    say(s->set, "open this address in a browser of this machine; Ctrl-C ends it");
 }
 
 // Paths are compared as they came: no name here needs a % to be said.
@@ -185,10 +179,11 @@ jali_status run_serve(jali_context *ctx, const settings *set)
         return fail(ctx, JALI_IO, "cannot begin to serve: %s", strerror(errno));
     }
     json_object_seed(0); // before there are threads
+    TRY(keep_picture(ctx, s));
     TRY(open_socket(ctx, s, &opened));
     daemon = start_daemon(s, opened);
     if (!daemon) TRY(fail(ctx, JALI_IO, "cannot start to serve port %d", s->port));
-    TRY(print_address(ctx, s));
+    print_address(s);
     TRY(dispatch(ctx, s));
 done:
     if (daemon) stop_daemon(s, daemon); // which closes the socket

@@ -3,6 +3,7 @@
 // A job holds what it reads, so an upload may go while a job of it waits; its bytes count until the job ends.
 #include "store.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static void drop(upload *u)
@@ -34,7 +35,19 @@ blob *store_room(server *s, size_t bytes)
     return room;
 }
 
-bool store_keep(server *s, blob *bytes, char id[TOKEN_BYTES])
+// How a picture is called in sentences and titles: no path, and not what a worker's other files are called.
+static bool is_fit(const char *name)
+{
+    static const char *const taken[] = {"", "-", "model.mesh", "printer.json"};
+    json_t *valid = json_string(name); // UTF-8
+    bool fit = valid && strlen(name) <= MOST_NAME_BYTES;
+    json_decref(valid);
+    for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) fit = fit && strcmp(name, taken[i]) != 0;
+    for (const char *c = name; *c; c++) fit = fit && (unsigned char)*c >= 32 && *c != '/' && *c != 127;
+    return fit;
+}
+
+bool store_keep(server *s, blob *bytes, const char *name, char id[TOKEN_BYTES])
 {
     upload *place = NULL;
     if (!random_id(id)) return false;
@@ -47,11 +60,12 @@ bool store_keep(server *s, blob *bytes, char id[TOKEN_BYTES])
     }
     *place = (upload){.bytes = bytes, .used = ++s->clock};
     memcpy(place->id, id, TOKEN_BYTES);
+    snprintf(place->name, sizeof place->name, "%s", is_fit(name) ? name : "picture");
     pthread_mutex_unlock(&s->lock);
     return true;
 }
 
-blob *store_find(server *s, const char *id)
+blob *store_find(server *s, const char *id, char name[MOST_NAME_BYTES + 1])
 {
     blob *found = NULL;
     pthread_mutex_lock(&s->lock);
@@ -59,6 +73,7 @@ blob *store_find(server *s, const char *id)
         upload *u = &s->upload[i];
         if (!u->bytes || strcmp(u->id, id) != 0) continue;
         u->used = ++s->clock;
+        memcpy(name, u->name, sizeof u->name);
         found = blob_hold(u->bytes);
     }
     pthread_mutex_unlock(&s->lock);

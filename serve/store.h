@@ -8,10 +8,12 @@
 blob *store_room(server *s, size_t bytes);
 
 /// Keep an upload (it is taken). False: no randomness.
-bool store_keep(server *s, blob *bytes, char id[TOKEN_BYTES]);
+///   in     name   of its file; what is not fit for one becomes "picture"
+bool store_keep(server *s, blob *bytes, const char *name, char id[TOKEN_BYTES]);
 
-/// Hold an upload; NULL: there is none of that name.
-blob *store_find(server *s, const char *id);
+/// Hold an upload; NULL: there is none of that id.
+///   out    name   of its file
+blob *store_find(server *s, const char *id, char name[MOST_NAME_BYTES + 1]);
 
 void store_free(server *s);
 
