@@ -44,6 +44,7 @@ static inline served serve(const char *program, const char *arguments)
     if (pipe(out) != 0) return s;
     snprintf(command, sizeof command, "exec %s serve --port 0 --quiet %s", program, arguments);
     s.pid = fork();
+    if (s.pid < 0) return s;
     if (s.pid == 0) {
         dup2(out[1], STDOUT_FILENO);
         close(out[0]);
@@ -62,6 +63,7 @@ static inline served serve(const char *program, const char *arguments)
 static inline int stop_serving(served *s, int number)
 {
     int state = 0;
+    if (s->pid <= 0) return -1; // it never began
     kill(s->pid, number);
     waitpid(s->pid, &state, 0);
     fclose(s->out);

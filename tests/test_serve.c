@@ -34,7 +34,7 @@ static int open_servers(void **state)
     const char *program = getenv("JALI_PROGRAM"), *other = getenv("JALI_HOOKED");
     if (!program || !*program || !other || !*other || !mkdtemp(folder) || chdir(folder) != 0) return -1;
     page = serve(program, "");
-    hooked = serve(other, "--jobs 2 --job-time 3");
+    hooked = serve(other, "--jobs 2 --job-time 120");
     if (!page.port || !hooked.port) return -1;
     reply tree = sample_of(&page);
     upload(&page, tree.body, tree.size, picture);
@@ -408,7 +408,7 @@ TEST(a_job_that_tries_what_it_may_not_is_ended)
     }
 }
 
-TEST(a_job_that_crashes_lies_or_does_not_end_is_its_own_loss)
+TEST(a_job_that_crashes_or_lies_is_its_own_loss)
 {
     char id[64], other[64];
     start_job(&hooked, "\"hook\": \"spin\", \"files\": [\"mask.png\"]", other);
@@ -418,7 +418,24 @@ TEST(a_job_that_crashes_lies_or_does_not_end_is_its_own_loss)
     end_job(&hooked, id, "failed", 1, "");
     start_job(&hooked, "\"verb\": \"adapt\", \"files\": [\"mask.png\"]", id);
     end_job(&hooked, id, "done", 0, "mask.png");
-    end_job(&hooked, other, "failed", 5, "--job-time");
+    reply r = about_job(&hooked, "DELETE", other, "");
+    CHECK_INT(r.status, 200);
+    reply_free(&r);
+}
+
+TEST(a_job_that_does_not_end_is_ended)
+{
+    char id[64], json[256];
+    served s = serve(getenv("JALI_HOOKED"), "--job-time 1");
+    reply tree = sample_of(&page), r;
+    upload(&s, tree.body, tree.size, id);
+    reply_free(&tree);
+    snprintf(json, sizeof json, "{\"picture\": \"%s\", \"hook\": \"spin\", \"files\": [\"mask.png\"]}", id);
+    r = ask(&s, "POST", "/api/v1/jobs", json);
+    CHECK(id_of(&r, id));
+    reply_free(&r);
+    end_job(&s, id, "failed", 5, "--job-time");
+    CHECK_INT(stop_serving(&s, SIGTERM), 0);
 }
 
 // The processes a server has started.
@@ -605,7 +622,8 @@ int main(void)
         cmocka_unit_test(jobs_that_make_no_sense_are_refused),
         cmocka_unit_test(bodies_have_their_size_and_their_time),
         cmocka_unit_test(a_job_that_tries_what_it_may_not_is_ended),
-        cmocka_unit_test(a_job_that_crashes_lies_or_does_not_end_is_its_own_loss),
+        cmocka_unit_test(a_job_that_crashes_or_lies_is_its_own_loss),
+        cmocka_unit_test(a_job_that_does_not_end_is_ended),
         cmocka_unit_test(a_killed_job_is_a_sentence_and_the_next_one_runs),
         cmocka_unit_test(the_newest_request_of_a_client_wins_and_jobs_are_cancelled),
         cmocka_unit_test(fifty_jobs_at_once_none_lost_none_mixed_up),
