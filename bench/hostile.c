@@ -242,7 +242,7 @@ int main(int argc, char **argv)
     pthread_t thread[THREADS], slow[THREADS];
     char picture[64], again[64];
     if (argc < 2) return 2;
-    requests = argc > 2 ? atoi(argv[2]) : 10000;
+    requests = argc > 2 ? (int)strtol(argv[2], NULL, 10) : 10000;
     page = serve(argv[1], "");
     if (!page.port) return 1;
     static const char *const samples[] = {"mask", "tree", "lettering"};

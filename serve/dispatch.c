@@ -77,7 +77,7 @@ static bool on_frame(void *user, const frame_head *head, const char *name, const
         return sentence(c, EXIT_FAILED, why);
     default:
         snprintf(words, sizeof words, "%.*s", (int)MIN(head->size, sizeof words - 1), (const char *)data);
-        return sentence(c, atoi(name) & 255, words);
+        return sentence(c, (int)strtol(name, NULL, 10) & 255, words);
     }
 }
 

@@ -37,7 +37,7 @@ static void forget_at(server *s, int32_t i)
 {
     task_free(s->task[i]);
     s->task_count--;
-    memmove(&s->task[i], &s->task[i + 1], (size_t)(s->task_count - i) * sizeof *s->task);
+    for (; i < s->task_count; i++) s->task[i] = s->task[i + 1];
 }
 
 // The job done whose results were not asked for longest; `but` is kept. False: there is none.
@@ -204,7 +204,7 @@ json_t *job_json(const server *s, const task *t)
     }
     if (finished(t)) {
         json_object_set_new(state, "exit", json_integer(t->exit));
-        json_object_set_new(state, t->state == JOB_DONE ? "message" : "error", json_string(t->message));
+        json_object_set_new(state, "message", json_string(t->message));
         json_object_set_new(state, "files", files_of_task(t));
     }
     return state;

@@ -37,7 +37,8 @@ enum MHD_Result reply_error(struct MHD_Connection *connection, unsigned status, 
     va_end(arguments);
     json_t *message = json_string(words); // NULL when what it quotes is no UTF-8
     if (!message) message = json_string("what was asked for is no UTF-8");
-    return reply_json(connection, status, json_pack("{s:o}", "error", message));
+    return reply_json(connection, status,
+                      json_pack("{s:{s:i, s:o}}", "error", "status", (int)status, "message", message));
 }
 
 static void let_go(void *bytes)

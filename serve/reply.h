@@ -7,7 +7,7 @@
 /// Answer with JSON (taken; NULL: no memory).
 enum MHD_Result reply_json(struct MHD_Connection *connection, unsigned status, json_t *json);
 
-/// {"error": "a sentence"}
+/// {"error": {"status": ..., "message": "a sentence"}}
 enum MHD_Result reply_error(struct MHD_Connection *connection, unsigned status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

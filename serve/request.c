@@ -30,8 +30,8 @@ static bool refuse(reading *r, unsigned status, const char *format, ...)
 
 static bool known_keys(reading *r)
 {
-    static const char *const known[] = {"picture", "mesh",   "printer", "options",
-                                        "files",   "client", "verb",    "name",
+    static const char *const known[] = {"picture", "mesh", "printer", "options", "files",
+                                        "client",  "verb", "name",    "name",
 #ifdef JALI_HOOKS
                                         "hook",
 #endif
@@ -62,12 +62,14 @@ static bool text_of(reading *r, const char *key, size_t most_bytes, const char *
 
 static bool read_uploads(reading *r)
 {
-    const char *picture, *mesh;
+    const char *picture, *mesh, *name;
     char mesh_name[MOST_NAME_BYTES + 1];
-    if (!text_of(r, "picture", TOKEN_BYTES, &picture) || !text_of(r, "mesh", TOKEN_BYTES, &mesh))
+    if (!text_of(r, "picture", TOKEN_BYTES, &picture) || !text_of(r, "mesh", TOKEN_BYTES, &mesh) ||
+        !text_of(r, "name", MOST_NAME_BYTES, &name))
         return false;
     if (!picture) return refuse(r, MHD_HTTP_BAD_REQUEST, "a job needs a \"picture\": the id of an upload");
     r->t->picture = store_find(r->s, picture, r->t->picture_name);
+    if (name && name_is_fit(name)) snprintf(r->t->picture_name, sizeof r->t->picture_name, "%s", name);
     if (mesh) r->t->mesh = store_find(r->s, mesh, mesh_name);
     if (!r->t->picture)
         return refuse(r, MHD_HTTP_NOT_FOUND, "there is no upload \"%s\"; send it again", picture);

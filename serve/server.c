@@ -13,6 +13,7 @@
 #include "base/file.h"
 
 #include <arpa/inet.h>
+#include <ctype.h>
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -96,7 +97,13 @@ done:
 
 static void print_address(const server *s)
 {
-    printf("http://127.0.0.1:%d/#token=%s\n", s->port, s->token);
+    printf("http://127.0.0.1:%d/#token=%s", s->port, s->token);
+    if (*s->picture) {
+        printf("&picture=%s&name=", s->picture);
+        for (const char *c = name_of(s->set->operand); *c; c++)
+            printf(isalnum((unsigned char)*c) ? "%c" : "%%%02X", (unsigned char)*c);
+    }
+    printf("\n");
     fflush(stdout);
     say(s->set, "open this address in a browser of this machine; Ctrl-C ends it");
 }

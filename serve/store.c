@@ -35,8 +35,7 @@ blob *store_room(server *s, size_t bytes)
     return room;
 }
 
-// How a picture is called in sentences and titles: no path, and not what a worker's other files are called.
-static bool is_fit(const char *name)
+bool name_is_fit(const char *name)
 {
     static const char *const taken[] = {"", "-", "model.mesh", "printer.json"};
     json_t *valid = json_string(name); // UTF-8
@@ -60,7 +59,7 @@ bool store_keep(server *s, blob *bytes, const char *name, char id[TOKEN_BYTES])
     }
     *place = (upload){.bytes = bytes, .used = ++s->clock};
     memcpy(place->id, id, TOKEN_BYTES);
-    snprintf(place->name, sizeof place->name, "%s", is_fit(name) ? name : "picture");
+    snprintf(place->name, sizeof place->name, "%s", name_is_fit(name) ? name : "picture");
     pthread_mutex_unlock(&s->lock);
     return true;
 }

@@ -4,6 +4,10 @@
 
 #include "serve.h"
 
+/// Can a picture be called so in sentences and titles? It is no path, and not what a worker's other files are
+/// called.
+bool name_is_fit(const char *name);
+
 /// Room for an upload of so many bytes; others may have to go for it. NULL: there is none, even so.
 blob *store_room(server *s, size_t bytes);
 
