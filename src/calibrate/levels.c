@@ -1,6 +1,7 @@
 // Levels of both tones under uneven light. Solid is everywhere near by. Void is not: among slots the wide
 // places are cells away; but the same light falls on both, so what is carried over is how much lighter void
-// is than solid.
+// is than solid, and that hardly changes from place to place. Slots that are known to have printed wide
+// enough show their void themselves.
 #include "calibrate/levels.h"
 
 #include "raster/raster.h"
@@ -11,6 +12,7 @@ static const double SAMPLES_A_CELL = 30;           // along a side
 static const double NEAR_CELLS = 1, FAR_CELLS = 4; // deviations of the neighbourhood
 static const double DARKEST = 0.02;                // a level that ratios are still taken of
 static const double FAR_WEIGHT = 1e-3;             // of the far one
+static const double STEADY = 100; // samples' worth of belief that voids are as much lighter everywhere
 
 void levels_free(jali_context *ctx, levels *l)
 {
@@ -18,7 +20,13 @@ void levels_free(jali_context *ctx, levels *l)
     *l = (levels){0};
 }
 
-// Black where a bar is measured, whatever it came out as.
+// Did it come out so near to what is drawn that its inside is sure?
+static bool is_sure(const jali_board_feature *f, const jali_measured *m, double growth_mm)
+{
+    return m && m->printed && fabs(m->width_mm - f->width_mm) < growth_mm;
+}
+
+// Black where a bar is measured that may have come out as anything.
 static void blot_out(const jali_board_feature *f, double pixel_mm, double margin_mm, jali_bitmap *bitmap)
 {
     static const double along[4][2] = {{1, 0}, {0, 1}, {M_SQRT1_2, M_SQRT1_2}, {1, 0}};
@@ -41,16 +49,19 @@ typedef struct block {
 } block;
 
 // Where a tone is sure: drawn so, and nothing else within the margin.
-static jali_status mark_sure(jali_context *ctx, const jali_board *board, const jali_bitmap *drawn, bool solid,
-                             double pixel_mm, double margin_mm, jali_bitmap *sure)
+static jali_status mark_sure(jali_context *ctx, const jali_board *board, const jali_measured *known,
+                             const jali_bitmap *drawn, bool solid, double pixel_mm,
+                             const level_margin *margin, jali_bitmap *sure)
 {
+    double margin_mm = margin->growth_mm + margin->edge_mm;
     jali_status status;
     jali_bitmap tone = {0};
     element disc = {0};
     TRY(jali_bitmap_copy(ctx, drawn, &tone));
     if (!solid) invert(ctx, drawn, &tone);
     for (int32_t i = 0; i < board->feature_count; i++)
-        blot_out(&board->feature[i], pixel_mm, margin_mm, &tone);
+        if (!is_sure(&board->feature[i], known ? &known[i] : NULL, margin->growth_mm))
+            blot_out(&board->feature[i], pixel_mm, margin_mm, &tone);
     TRY(element_disc(ctx, 2 * margin_mm / pixel_mm, &disc));
     TRY(jali_bitmap_create(ctx, drawn->width_px, drawn->height_px, sure));
     TRY(erode(ctx, &tone, &disc, false, sure));
@@ -86,7 +97,8 @@ static int64_t sample(const jali_picture *p, const homography *map, const jali_b
 }
 
 // The plane through the neighbourhood, at the node.
-static double level_of_node(const levels *l, const block *blocks, double x, double y, double cell_mm)
+static double level_of_node(const levels *l, const block *blocks, double x, double y, double steady,
+                            double cell_mm)
 {
     normal_equations e = {.unknowns = 3};
     double fit[3], sum = 0, weights = 0;
@@ -100,6 +112,8 @@ static double level_of_node(const levels *l, const block *blocks, double x, doub
         sum += weight * b->level / b->n;
         weights += weight;
     }
+    add_equation(&e, (double[]){0, 1, 0}, 0, steady);
+    add_equation(&e, (double[]){0, 0, 1}, 0, steady);
     return solve_normal(&e, fit) ? fit[0] : weights > 0 ? sum / weights : NAN;
 }
 
@@ -119,13 +133,15 @@ static void fit_nodes(levels *l, const block *blocks, int tone, double cell_mm)
     for (int32_t k = 0; k < l->rows; k++)
         for (int32_t i = 0; i < l->columns; i++) {
             double *node = l->node[k * l->columns + i];
-            double fit = level_of_node(l, blocks, (i + 0.5) * l->step_mm, (k + 0.5) * l->step_mm, cell_mm);
+            double x = (i + 0.5) * l->step_mm, y = (k + 0.5) * l->step_mm;
+            double fit = level_of_node(l, blocks, x, y, tone == 0 ? 0 : STEADY, cell_mm);
             node[tone] = tone == 0 ? fit : fit * fmax(node[0], DARKEST);
         }
 }
 
 jali_status learn_levels(jali_context *ctx, const jali_picture *picture, const jali_board *board,
-                         const homography *map, double margin_mm, levels *l)
+                         const jali_measured *known, const homography *map, const level_margin *margin,
+                         levels *l)
 {
     jali_status status;
     jali_bitmap drawn = {0}, sure = {0};
@@ -142,7 +158,7 @@ jali_status learn_levels(jali_context *ctx, const jali_picture *picture, const j
         blocks = NULL;
         TRY(ALLOCATE_CLEARED(ctx, blocks, l->columns * l->rows));
         jali_bitmap_free(ctx, &sure);
-        TRY(mark_sure(ctx, board, &drawn, tone == 0, pixel_mm, margin_mm, &sure));
+        TRY(mark_sure(ctx, board, known, &drawn, tone == 0, pixel_mm, margin, &sure));
         if (sample(picture, map, &sure, pixel_mm, l, blocks) > 0)
             TRY(fail(ctx, JALI_NO_RESULT, "a part of the board is not in the picture: all of it must be"));
         if (tone == 1) take_ratios(l, blocks);

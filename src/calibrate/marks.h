@@ -11,7 +11,7 @@ typedef struct mark_guess {
     homography map; // from shares of the rectangle through the corner marks (x right, y up) to the scan's px
     bool mirrored;  // the board is seen from behind
     bool dark;      // voids are darker than the plate
-    double radius_px, size_px2; // of the marks; of the rectangle
+    double radius_px, size_px2; // of the first mark; of the rectangle
 } mark_guess;
 
 enum { MOST_GUESSES = 32 };

@@ -46,13 +46,18 @@ static bool centre_mark(const jali_picture *p, double radius, double at[2], doub
 // The guess's marks at full resolution: its map anew, and the levels of both tones.
 static bool settle_guess(const jali_picture *p, mark_guess *guess, double *inside, double *around)
 {
-    double from[JALI_BOARD_MARKS][2], to[JALI_BOARD_MARKS][2], level[2];
+    double from[JALI_BOARD_MARKS][2], to[JALI_BOARD_MARKS][2], radius[JALI_BOARD_MARKS], level[2];
     *inside = *around = 0;
+    // In perspective the far marks are smaller; looked at too widely they would take in the plate's edge.
+    for (int k = 0; k < JALI_BOARD_MARKS; k++) {
+        jali_board_mark_share(k, from[k]);
+        radius[k] = guess->radius_px * homography_scale(&guess->map, from[k]) /
+                    homography_scale(&guess->map, from[0]);
+    }
     for (int pass = 0; pass < 2; pass++)
         for (int k = 0; k < JALI_BOARD_MARKS; k++) {
-            jali_board_mark_share(k, from[k]);
             if (pass == 0) homography_apply(&guess->map, from[k], to[k]);
-            if (!centre_mark(p, guess->radius_px, to[k], &level[0], &level[1])) return false;
+            if (!centre_mark(p, radius[k], to[k], &level[0], &level[1])) return false;
             *inside += level[0] / (2 * JALI_BOARD_MARKS);
             *around += level[1] / (2 * JALI_BOARD_MARKS);
         }

@@ -105,7 +105,7 @@ static jali_status check_sight(jali_context *ctx, const jali_scan *scan)
             255 * scan->contrast, 255 * LEAST_CONTRAST);
     if (scan->residual_mm > MOST_RESIDUAL_MM)
         return fail(ctx, JALI_NO_RESULT,
-                    "the board is bent in the picture: features lie %.2f mm from where a flat board has "
+                    "the board is bent in the picture: features lie %.3f mm from where a flat board has "
                     "them, %.2f mm at "
                     "most are accepted; press it flat, or take the photograph from farther away",
                     scan->residual_mm, MOST_RESIDUAL_MM);
@@ -170,9 +170,9 @@ static jali_status measure_board(jali_context *ctx, const jali_picture *picture,
         TRY(step(ctx, "calibrate", 0.3 + 0.2 * round));
         if (round < 2) {
             levels_free(ctx, &l);
-            double growth_mm = fmax(MARGIN_MM, fmax(fabs(s.e_solid), fabs(s.e_void)) / 2 + MARGIN_MM / 3);
-            double edge_mm = fmax(MARGIN_PX * scan->pixel_mm, MARGIN_BLURS * s.blur_mm);
-            TRY(learn_levels(ctx, picture, &scan->board, map, growth_mm + edge_mm, &l));
+            level_margin margin = {fmax(MARGIN_MM, fmax(fabs(s.e_solid), fabs(s.e_void)) / 2 + MARGIN_MM / 3),
+                                   fmax(MARGIN_PX * scan->pixel_mm, MARGIN_BLURS * s.blur_mm)};
+            TRY(learn_levels(ctx, picture, &scan->board, round ? scan->feature : NULL, map, &margin, &l));
         }
         together t = measure_all(&s, scan, lines);
         scan->contrast = t.contrast;
