@@ -27,7 +27,7 @@ static const row rows[] = {
 
 // What became of a row's pictures.
 typedef struct tally {
-    int32_t right, wrong, refused;
+    int32_t right, wrong, doubted, doubted_wrong, refused;
     double worst[2], squares[2];
 } tally;
 
@@ -80,10 +80,14 @@ static void judge(jali_context *ctx, const printed *p, const jali_picture *pictu
             t->squares[k] += off[k] * off[k];
             right = right && fabs(off[k]) <= 0.02;
         }
-        *(right ? &t->right : &t->wrong) += 1;
-        if (!right)
-            fprintf(stderr, "  %d: phi_e %+.3f %+.3f off, phi_s %.3f for %.3f, phi_v %.3f for %.3f\n", n,
-                    off[0], off[1], c.phi_s.value_mm, p->phi_s, c.phi_v.value_mm, p->phi_v);
+        bool doubted = c.phi_e_solid.doubtful || c.phi_e_void.doubtful;
+        *(doubted ? &t->doubted : right ? &t->right : &t->wrong) += 1;
+        t->doubted_wrong += doubted && !right;
+        if (!right || doubted)
+            fprintf(stderr,
+                    "  %d: phi_e %+.3f (%.3f) %+.3f (%.3f) off, phi_s %.3f for %.3f, phi_v %.3f for %.3f\n",
+                    n, off[0], c.phi_e_solid.error_mm, off[1], c.phi_e_void.error_mm, c.phi_s.value_mm,
+                    p->phi_s, c.phi_v.value_mm, p->phi_v);
     }
     jali_widths_free(ctx, &widths);
     jali_scan_free(ctx, &scan);
@@ -110,9 +114,10 @@ static jali_status run_row(jali_context *ctx, const row *r, int32_t first, int32
         judge(ctx, &p, &picture, n, &t);
         free(picture.grey);
     }
-    double count = fmax(t.right + t.wrong, 1);
-    printf("| %-32s | %5d | %5d | %7d | %.4f / %.4f | %.4f / %.4f |\n", r->name, t.right, t.wrong, t.refused,
-           sqrt(t.squares[0] / count), t.worst[0], sqrt(t.squares[1] / count), t.worst[1]);
+    double count = fmax(t.right + t.wrong + t.doubted, 1);
+    printf("| %-32s | %d | %d | %d, %d | %d | %.4f / %.4f | %.4f / %.4f |\n", r->name, t.right, t.wrong,
+           t.doubted, t.doubted_wrong, t.refused, sqrt(t.squares[0] / count), t.worst[0],
+           sqrt(t.squares[1] / count), t.worst[1]);
     fflush(stdout);
     jali_bitmap_free(ctx, &plate);
     jali_board_free(ctx, &board);
@@ -125,9 +130,9 @@ int main(int argc, char **argv)
     for (int i = 1; i < argc && i <= 3; i++) number[i - 1] = strtol(argv[i], NULL, 10);
     jali_context *ctx;
     if (jali_context_create(NULL, &ctx) != JALI_OK) return 1;
-    printf("| board and picture                | right | wrong | refused | phi_e solid, rms / worst | phi_e "
-           "void |\n");
-    printf("|---|---|---|---|---|---|\n");
+    printf("| board and picture                | right | wrong | doubted, of them wrong | refused | phi_e "
+           "solid, rms / worst | phi_e void |\n");
+    printf("|---|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if ((number[2] == 0 || number[2] == (long)i + 1) &&
             run_row(ctx, &rows[i], (int32_t)number[1], (int32_t)number[0]) != JALI_OK)

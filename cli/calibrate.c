@@ -68,8 +68,9 @@ done:
 static json_t *fitted_json(const jali_fitted *f, const char *value)
 {
     if (f->kept == 0) return json_pack("{s:n, s:i, s:i}", value, "measured", f->measured, "kept", 0);
-    return json_pack("{s:f, s:f, s:i, s:i}", value, f->value, "spread_mm", f->spread, "measured", f->measured,
-                     "kept", f->kept);
+    json_t *error = f->error_mm > 0 ? json_real(f->error_mm) : json_null();
+    return json_pack("{s:f, s:f, s:o, s:b, s:i, s:i}", value, f->value, "spread_mm", f->spread, "error_mm",
+                     error, "doubtful", f->doubtful, "measured", f->measured, "kept", f->kept);
 }
 
 static json_t *limit_json(const jali_limit *l)

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <jali/calibrate.h>
+#include "base/bytes.h"
 #include "calibrate/robust.h"
 
 static jali_status read_text(const char *text, jali_widths *widths)
@@ -172,6 +173,42 @@ static jali_calibration calibrated(const char *list)
     return c;
 }
 
+// Is it doubted, and said so?
+static void check_doubt(const jali_widths *w, bool doubtful, double least_mm, double most_mm)
+{
+    jali_calibration c;
+    jali_bytes text = {0};
+    CHECK_OK(jali_calibrate(ctx, w, &c));
+    CHECK(c.phi_e_void.error_mm >= least_mm && c.phi_e_void.error_mm <= most_mm);
+    CHECK_INT(c.phi_e_void.doubtful, doubtful);
+    CHECK(!c.phi_e_solid.doubtful);
+    CHECK_OK(jali_calibration_sentences(ctx, &c, &text));
+    CHECK_OK(bytes_append(ctx, &text, "", 1));
+    CHECK_INT(strstr((const char *)text.data, "not sure") != NULL, doubtful);
+    jali_bytes_free(ctx, &text);
+}
+
+TEST(the_standard_error_counts_what_bars_have_in_common)
+{
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        uint64_t random = seed * 77;
+        jali_widths w = printed_board(0.1, 0.1, 0.3, 0.5, 0.02, 0.02, &random);
+        check_doubt(&w, false, 0.0004, 0.005); // noise: 0.0058 mm over the root of some 40 bars
+        for (size_t i = 0; i < w.count; i++)   // voids read 5 % too narrow: 0.05 mm of a bar of 1 mm
+            if (w.width[i].kind == JALI_BOARD_VOID || w.width[i].kind == JALI_BOARD_VOID_PAIR)
+                w.width[i].measured_mm *= 0.95;
+        check_doubt(&w, true, 0.01, 0.04);
+        jali_widths_free(ctx, &w);
+        w = printed_board(0.1, 0.1, 0.3, 0.5, 0.02, 0.02, &random);
+        for (size_t i = 0; i < w.count; i++) // one axis loses its steps
+            if (w.width[i].kind == JALI_BOARD_VOID && w.width[i].direction == JALI_BOARD_HORIZONTAL &&
+                w.width[i].measured_mm > 0)
+                w.width[i].measured_mm -= 0.06;
+        check_doubt(&w, true, 0.0004, 0.03); // its bars are outliers: a quarter of all
+        jali_widths_free(ctx, &w);
+    }
+}
+
 TEST(limits_say_what_is_known_and_no_more)
 {
     jali_calibration c = calibrated("solid:0.2=0.3,solid:0.3=0,solid:0.4=0.5,solid:0.5=0.6,solid:0.5=0.61");
@@ -267,6 +304,7 @@ int main(void)
         cmocka_unit_test(an_outlier_among_ten_does_not_move_the_mean),
         cmocka_unit_test(the_slope_of_holes_is_that_of_least_squares_without_outliers),
         cmocka_unit_test(what_a_printer_does_comes_back_as_its_figures),
+        cmocka_unit_test(the_standard_error_counts_what_bars_have_in_common),
         cmocka_unit_test(limits_say_what_is_known_and_no_more),
         cmocka_unit_test(too_little_and_contradictions_end_in_sentences),
         cmocka_unit_test(what_a_profile_says_already_stays),

@@ -258,6 +258,68 @@ TEST(bad_scans_end_in_a_sentence)
     plain_scan_free(&s);
 }
 
+// The far marks of a tilted board are small, and beside them lies what looks like void: the table.
+TEST(a_tilted_board_is_registered_to_its_far_corner)
+{
+    plain_scan s = plain();
+    for (int way = 0; way < 4; way++) {
+        look l = s.l;
+        l.px_per_mm = 130 / 25.4;
+        l.width = (int32_t)(1.35 * s.board.width_mm * l.px_per_mm);
+        l.height = (int32_t)(1.35 * s.board.height_mm * l.px_per_mm);
+        l.aside[0] = l.aside[1] = 0;
+        l.tilt[0] = way & 1 ? 0.08 : -0.08;
+        l.tilt[1] = way & 2 ? 0.08 : -0.08;
+        jali_picture picture = looked_at(&s.p, &l);
+        jali_scan scan;
+        jali_calibration c;
+        CHECK_OK(calibrate_picture(ctx, &picture, NULL, &scan, &c));
+        check_figures(&s.p, &c, 0.01);
+        CHECK(scan.residual_mm < 0.02 && !c.phi_e_solid.doubtful && !c.phi_e_void.doubtful);
+        for (int k = 0; k < 4; k++) {
+            double board[2], *h = scan.map, x = s.board.mark_mm[k][0], y = s.board.mark_mm[k][1];
+            double w = h[6] * x + h[7] * y + h[8];
+            look_through(&l, &s.board, (h[0] * x + h[1] * y + h[2]) / w, (h[3] * x + h[4] * y + h[5]) / w,
+                         board);
+            CHECK(hypot(board[0] - x, board[1] - y) < 0.05);
+        }
+        jali_scan_free(ctx, &scan);
+        free(picture.grey);
+    }
+    plain_scan_free(&s);
+}
+
+// A lens bends what eight ratios cannot take back; 0.12 mm of it are accepted.
+TEST(a_bent_board_is_measured_or_refused)
+{
+    static const struct {
+        double lens;
+        bool accepted;
+    } cases[] = {{0.004, true}, {0.02, true}, {0.03, false}, {-0.02, true}, {-0.03, false}};
+    plain_scan s = plain();
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        look l = s.l;
+        l.lens = cases[n].lens;
+        jali_picture picture = looked_at(&s.p, &l);
+        jali_scan scan;
+        jali_calibration c;
+        jali_scan_options opt = {.board = &s.board}; // its code is bent as well
+        jali_status status = calibrate_picture(ctx, &picture, &opt, &scan, &c);
+        if (cases[n].accepted) {
+            CHECK_INT(status, JALI_OK);
+            check_figures(&s.p, &c, 0.02);
+            CHECK(scan.residual_mm < 0.12 && (fabs(l.lens) < 0.01 || scan.residual_mm > 0.08));
+            jali_scan_free(ctx, &scan);
+        } else {
+            CHECK_INT(status, JALI_NO_RESULT);
+            CHECK(strstr(jali_message(ctx), "bent in the picture"));
+            CHECK(strstr(jali_message(ctx), "0.12 mm at most"));
+        }
+        free(picture.grey);
+    }
+    plain_scan_free(&s);
+}
+
 TEST(a_lost_code_is_said_and_can_be_given)
 {
     plain_scan s = plain();
@@ -381,6 +443,8 @@ int main(void)
         cmocka_unit_test(upside_down_and_from_behind_are_corrected),
         cmocka_unit_test(with_dpi_a_print_that_shrank_is_told),
         cmocka_unit_test(bad_scans_end_in_a_sentence),
+        cmocka_unit_test(a_tilted_board_is_registered_to_its_far_corner),
+        cmocka_unit_test(a_bent_board_is_measured_or_refused),
         cmocka_unit_test(a_lost_code_is_said_and_can_be_given),
         cmocka_unit_test(what_predict_prints_comes_back_as_the_profile),
         cmocka_unit_test(any_number_of_threads_finds_the_same),

@@ -65,7 +65,9 @@ typedef struct jali_fitted {
     int32_t measured; // things that printed
     int32_t kept;     // of them, the others were too far off; 0: fewer than 3 printed, nothing is fitted
     double value;
-    double spread; // standard deviation of those kept about the fit, mm
+    double spread;   // standard deviation of those kept about the fit, mm
+    double error_mm; // standard error of the value, with what bars have in common; holes: 0, not told
+    bool doubtful;   // twice that is above 0.02 mm, or more than a fifth were too far off
 } jali_fitted;
 
 /// A plain value. {0} is valid and says nothing.

@@ -4,7 +4,10 @@
 // phi_s
 //          and phi_v are the narrowest that print.
 // Differs: solid and void each on their own; a mean that outliers do not move; a width counts as printed only
-//          together with all wider ones; round holes by their own law.
+//          together with all wider ones; round holes by their own law; each phi_e with its standard error,
+//          which counts what bars of a row, or all bars by their width, have in common (clusters: K.-Y.
+//          Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, 1986, with G / (G
+//          - 1)).
 // Checked: tests/test_calibrate.c.
 #include <jali/calibrate.h>
 
@@ -14,7 +17,10 @@
 #include <stdlib.h>
 
 static const double LEAST_SCALE_MM = 0.004; // of what counts as an outlier: no gauge and no scan is better
+static const double TRUSTED_MM = 0.02;      // twice the standard error of a phi_e may be this
+static const double LEAST_KEPT = 0.8;       // of what was measured: else the outliers may be right
 enum { FEWEST = 3 };                        // measurements for a figure
+enum { ROWS = JALI_BOARD_KINDS * (JALI_BOARD_ROUND + 1) }; // a kind in a direction is a row
 
 typedef enum tone { SOLID, VOID, NEITHER } tone;
 
@@ -72,16 +78,62 @@ static double error_of(const jali_width *w)
     return bar_tone(w->kind) == VOID || w->kind == JALI_BOARD_HOLE ? -wider : wider;
 }
 
-// The mean error of what printed and is of this tone (SOLID, VOID) or, for NEITHER, a pin.
+// Is it of this tone (SOLID, VOID) or, for NEITHER, a pin, and there?
+static bool counts_for(const jali_width *w, tone of)
+{
+    return (of == NEITHER ? w->kind == JALI_BOARD_PIN : bar_tone(w->kind) == of) && w->measured_mm > 0;
+}
+
+// Of the mean of the errors from `low` to `high`. Chance alone leaves the spread over the root of the number.
+// What bars have in common it leaves out: a row lies in one place and one direction, so the rows' means tell
+// what light, blur and axes do. And a level that is wrong makes bars wrong in proportion to their width: the
+// slope over the width, times the mean width, is what it does to the mean at most, and is taken as two
+// standard errors.
+static double standard_error(const jali_width *w, size_t count, tone of, double low, double high,
+                             const jali_fitted *f)
+{
+    double row[ROWS] = {0}, n = f->kept, width = 0, ww = 0, we = 0, by_rows = 0, rows = 0;
+    bool seen[ROWS] = {false};
+    for (size_t i = 0; i < count; i++)
+        if (counts_for(&w[i], of) && error_of(&w[i]) >= low && error_of(&w[i]) <= high)
+            width += w[i].designed_mm / n;
+    for (size_t i = 0; i < count; i++) {
+        double off = error_of(&w[i]) - f->value, wider = w[i].designed_mm - width;
+        size_t at = (size_t)w[i].kind * (JALI_BOARD_ROUND + 1) + (size_t)w[i].direction;
+        if (!counts_for(&w[i], of) || error_of(&w[i]) < low || error_of(&w[i]) > high) continue;
+        row[at] += off;
+        seen[at] = true;
+        ww += wider * wider;
+        we += wider * off;
+    }
+    for (int i = 0; i < ROWS; i++) {
+        by_rows += row[i] * row[i] / (n * n);
+        rows += seen[i];
+    }
+    double chance = f->spread * f->spread / n, squares = f->spread * f->spread * (n - 1), common = 0;
+    if (rows > 1) chance = fmax(chance, by_rows * rows / (rows - 1));
+    if (ww > 0 && n > 2) {
+        double slope = we / ww, of_slope = fmax(squares - slope * we, 0) / (n - 2) / ww;
+        common = fmax(slope * slope - of_slope, 0) * width * width;
+    }
+    return sqrt(chance + common / 4);
+}
+
+// The mean error of what counts.
 static jali_fitted fit_error(const jali_width *w, size_t count, tone of, double *scratch)
 {
     jali_fitted f = {0};
-    for (size_t i = 0; i < count; i++) {
-        bool counts = of == NEITHER ? w[i].kind == JALI_BOARD_PIN : bar_tone(w[i].kind) == of;
-        if (counts && w[i].measured_mm > 0) scratch[f.measured++] = error_of(&w[i]);
+    for (size_t i = 0; i < count; i++)
+        if (counts_for(&w[i], of)) scratch[f.measured++] = error_of(&w[i]);
+    if (f.measured < FEWEST) return f;
+    f.kept = robust_mean(scratch, f.measured, LEAST_SCALE_MM, scratch + count, &f.value, &f.spread);
+    double low = scratch[0], high = scratch[0];
+    for (int32_t i = 1; i < f.kept; i++) {
+        low = fmin(low, scratch[i]);
+        high = fmax(high, scratch[i]);
     }
-    if (f.measured >= FEWEST)
-        f.kept = robust_mean(scratch, f.measured, LEAST_SCALE_MM, scratch + count, &f.value, &f.spread);
+    f.error_mm = standard_error(w, count, of, low, high, &f);
+    f.doubtful = 2 * f.error_mm > TRUSTED_MM || f.kept < LEAST_KEPT * f.measured;
     return f;
 }
 

@@ -36,8 +36,9 @@ static jali_status apply_error(jali_context *ctx, const jali_fitted *f, const ch
             "profile to begin with",
             f->measured, what);
     }
-    set_figure(phi_e, rounded(f->value), "measured from %.120s on %d bars, spread %.3f mm", from, f->kept,
-               f->spread);
+    set_figure(phi_e, rounded(f->value),
+               "measured from %.120s on %d bars, spread %.3f mm, standard error %.3f mm", from, f->kept,
+               f->spread, f->error_mm);
     set_figure(spread, rounded(f->spread), "measured from %.120s on %d bars", from, f->kept);
     return JALI_OK;
 }
@@ -114,6 +115,13 @@ static jali_status tell_error(jali_context *ctx, const jali_fitted *f, const cha
     if (f->kept < f->measured)
         TRY(bytes_print(ctx, text, ", %d too far off to count", f->measured - f->kept));
     TRY(bytes_print(ctx, text, ").\n"));
+    if (f->doubtful)
+        TRY(bytes_print(
+            ctx, text,
+            "That is not sure: twice its standard error is %.3f mm, 0.02 mm is trusted; %d of %d were too "
+            "far off, a fifth is trusted. Rows or widths of these disagree: measure again, more finely, "
+            "under even light.\n",
+            2 * f->error_mm, f->measured - f->kept, f->measured));
 done:
     return status;
 }
