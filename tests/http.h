@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/wait.h>
@@ -46,6 +47,7 @@ static inline served serve(const char *program, const char *arguments)
     s.pid = fork();
     if (s.pid < 0) return s;
     if (s.pid == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGTERM); // it does not outlive a test that is ended
         dup2(out[1], STDOUT_FILENO);
         close(out[0]);
         close(out[1]);
