@@ -57,12 +57,12 @@ function threshold() {
 
 const group = (words, ...children) => make("fieldset", {}, make("legend", {}, text(words)), ...children);
 
-function pictureGroup(lists, takeFile, takeSample) {
+function pictureGroup(lists, takeFile) {
     const input = make("input", { type: "file", class: "hidden-input", id: freshId("picture"),
         accept: "image/png,image/jpeg,image/webp,image/svg+xml,.pbm,.pgm,.ppm",
         onchange: () => input.files[0] && takeFile(input.files[0]) });
     const gallery = make("div", { class: "gallery", role: "group", "aria-label": text("samples") },
-        lists.samples.map(({ name, what }) => make("button", { type: "button", title: what, onclick: () => takeSample(name), "data-sample": name }, name)));
+        lists.samples.map(({ name, what }) => make("button", { type: "button", title: what, onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "" }), "data-sample": name }, name)));
     updates.push((s) => {
         for (const button of gallery.children) button.setAttribute("aria-pressed", String(button.dataset.sample === s.sample));
     });
@@ -101,9 +101,9 @@ function strengthGroup(lists) {
 }
 
 /** Fill the form anew, in the language that is set. */
-export function showControls(form, lists, takeFile, takeSample) {
+export function showControls(form, lists, takeFile) {
     updates.length = 0;
-    form.replaceChildren(pictureGroup(lists, takeFile, takeSample), printerGroup(lists), surfaceGroup(), strengthGroup(lists));
+    form.replaceChildren(pictureGroup(lists, takeFile), printerGroup(lists), surfaceGroup(), strengthGroup(lists));
     updateControls();
 }
 

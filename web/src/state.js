@@ -1,11 +1,17 @@
 // What the user has chosen: one plain object, its history, and its form in the address.
 
 export const DEFAULTS = Object.freeze({
-    sample: "girih", // "" when the picture is the user's own
-    threshold: "auto", invert: false, rotate: 0,
+    sample: "girih", // "" when the picture is the user's own, and then
+    upload: "", uploadName: "", // the server's id of it, and its file's name
+    threshold: "auto", window: 0, contrast: 0.2, // auto, local or 1 .. 255; of local: its window in px (0: it chooses), its contrast
+    crop: "", // left,top,width,height in the picture's own pixels, before it is turned; "" = all of it
+    invert: false, mirror: false, rotate: 0,
     width: 70, frame: 2, thickness: 4,
-    printer: "hori-z500", "phi-e": 0.1, "phi-s": 0.3, "phi-v": 0.5, nudge: false,
-    surface: "plate", radius: 40, height: 120,
+    printer: "hori-z500", "phi-e": 0.1, "phi-s": 0.3, "phi-v": 0.5, nudge: false, // "": the three figures; "file":
+    profile: "", profileName: "", // a profile of one's own, as JSON, and its file's name
+    surface: "plate", radius: 40, height: 120, // "mesh":
+    mesh: "", meshName: "", meshHeight: 0, meshUp: "z", meshTurn: 0, // an upload, its file's name; height in mm (0: as it is)
+    place: "auto", at: "", dir: "", // auto, project or wrap; "x,y,z" in mm and as a direction, "" = found
     force: 0, material: "pla",
 });
 
@@ -77,18 +83,43 @@ const SHAPES = {
     sphere: (s) => `sphere:r=${s.radius}`,
 };
 
-/** The command line's options that make this, by name. */
-export function options(s = now) {
-    const out = { width: s.width, frame: s.frame, thickness: s.thickness };
+// A model that was uploaded is called so in a job (docs/serve.md), and by its own name on the command line.
+function meshSurface(s, name) {
+    const words = [["height", s.meshHeight || ""], ["up", s.meshUp === "z" ? "" : s.meshUp], ["turn", s.meshTurn || ""]];
+    return [name, words.filter(([, value]) => value !== "").map(([key, value]) => `${key}=${value}`).join()].filter(Boolean).join(":");
+}
+
+/** What is done to the picture before anything else, as the command line's options. */
+export function pictureOptions(s = now) {
+    const out = {};
+    for (const key of ["crop", "invert", "mirror", "rotate"]) if (s[key]) out[key] = String(s[key]);
     if (s.threshold !== "auto") out.threshold = s.threshold;
-    if (s.invert) out.invert = true;
-    if (s.rotate) out.rotate = s.rotate;
-    if (s.printer) out.printer = s.printer;
+    if (s.threshold === "local" && s.window) out.window = String(s.window);
+    if (s.threshold === "local") out.contrast = String(s.contrast);
+    return out;
+}
+
+/** The command line's options that make this, by name. */
+export function options(s = now, meshName = "model.mesh", profileName = "") {
+    const out = { ...pictureOptions(s), width: s.width, frame: s.frame, thickness: s.thickness };
+    if (s.printer === "file") { if (profileName) out.printer = profileName; }
+    else if (s.printer) out.printer = s.printer;
     else for (const key of ["phi-e", "phi-s", "phi-v"]) out[key] = s[key];
     if (s.nudge) out.nudge = 3;
-    if (SHAPES[s.surface] && s.surface !== "plate") out.surface = SHAPES[s.surface](s);
+    if (s.surface === "mesh" && s.mesh) out.surface = meshSurface(s, meshName);
+    else if (SHAPES[s.surface] && s.surface !== "plate") out.surface = SHAPES[s.surface](s);
+    if (out.surface) {
+        if (s.place !== "auto") out.place = s.place;
+        for (const key of ["at", "dir"]) if (s[key]) out[key] = s[key];
+    }
     if (s.force > 0) Object.assign(out, { force: s.force, material: s.material });
     return Object.fromEntries(Object.entries(out).map(([key, value]) => [key, String(value)]));
+}
+
+/** A job's keys that say what to make of a picture: docs/serve.md, without verb and files. */
+export function job(picture, s = now) {
+    return { picture: picture.id, name: picture.name, options: options(s),
+        ...(s.surface === "mesh" && s.mesh ? { mesh: s.mesh } : {}), ...(s.printer === "file" && s.profile ? { printer: JSON.parse(s.profile) } : {}) };
 }
 
 const quoted = (word) => (/^[\w.,:=/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
@@ -96,7 +127,7 @@ const quoted = (word) => (/^[\w.,:=/+-]+$/.test(word) ? word : `'${word.replaceA
 /** The same as one line for a shell. */
 export function commandLine(picture) {
     const words = ["jali", "carve", quoted(picture)];
-    for (const [key, value] of Object.entries(options()))
+    for (const [key, value] of Object.entries(options(now, now.meshName, now.profileName)))
         words.push(value === "true" ? `--${key}` : `--${key} ${quoted(value)}`);
     return [...words, "-o", quoted(picture.replace(/\.\w+$/, "") + ".3mf")].join(" ");
 }

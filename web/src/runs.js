@@ -1,0 +1,52 @@
+// Runs: a job is asked for, followed by its events, and stopped when nobody waits for it any more.
+
+import * as api from "./api.js";
+
+const client = crypto.randomUUID(); // this page, to the server: of each of its kinds of jobs the newest counts
+
+/** Run a job to its end and give its id; tell(stage, fraction) hears how far it is.
+ *  One that is aborted ends on the server, too. */
+export async function run(request, kind, signal, tell = () => {}) {
+    const id = await api.start({ ...request, client: `${client}-${kind}` });
+    const stop = () => api.stop(id);
+    if (signal?.aborted) stop();
+    signal?.throwIfAborted();
+    signal?.addEventListener("abort", stop, { once: true });
+    try {
+        for await (const event of api.events(id, signal)) {
+            if (event.type === "progress") tell(event.stage, event.fraction);
+            if (event.type === "done") return id;
+            if (event.type === "failed") throw new api.Refusal(event.message);
+        }
+        throw new TypeError("the events ended early");
+    } finally {
+        signal?.removeEventListener("abort", stop);
+    }
+}
+
+/** One file of a job, as an ImageBitmap. */
+export async function bitmapOf(id, name, signal) {
+    return createImageBitmap(await (await api.file(id, name, signal)).blob());
+}
+
+/** Several runs, one after the other in time and each a little later than the one before; a new plan takes the old one's place. */
+export class Plan {
+    constructor(failed) {
+        this.failed = failed;
+        this.timers = [];
+        this.abort = null;
+    }
+
+    /** steps: [[run(signal), after ms], ...] */
+    begin(steps) {
+        this.end();
+        const { signal } = this.abort = new AbortController();
+        this.timers = steps.map(([step, after]) => setTimeout(() => step(signal).catch(this.failed), after));
+    }
+
+    end() {
+        this.abort?.abort();
+        this.timers.forEach(clearTimeout);
+        this.abort = null;
+    }
+}
