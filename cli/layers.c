@@ -102,7 +102,8 @@ static jali_status map_bin(jali_context *ctx, const made *m, jali_quantity quant
     uint8_t(*colour)[3] = NULL;
     if (!s->round_count)
         return fail(ctx, JALI_BAD_VALUE, "there is a map only under a load, such as force or pinch");
-    jali_map_options opt = map_of(s, quantity);
+    jali_map_options opt = map_of(s, quantity); // the scale ends where figures.json says the largest value is
+    opt.top = quantity == JALI_STRESS ? MAX(s->analysis.stress.value, opt.limit) : s->analysis.moved.value;
     TRY(jali_map_solid(ctx, &s->sheet, &s->analysis, &opt, 0, &mesh, &colour));
     TRY(append_mesh(ctx, &mesh, (const uint8_t(*)[3])colour, bytes));
 done:

@@ -9,18 +9,18 @@ import { listenForFiles, pictureOf, uploadPicture } from "./files.js";
 import { PictureView } from "./picture-view.js";
 import { Progress } from "./progress.js";
 import { showResults } from "./results.js";
-import { Plan, bitmapOf, run } from "./runs.js";
+import { Plan, bitmapOf, bytesOf, run } from "./runs.js";
 import { SolidView } from "./solid-view.js";
 import { canRedo, canUndo, change, commandLine, job, onChange, readAddress, redo, state, undo } from "./state.js";
 import { fillWords, language, setLanguage, text } from "./strings.js";
 
-const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "errors.png", "object.stl"];
+const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
 const PREVIEW_AFTER_MS = 40, WHOLE_AFTER_MS = 350;
 const $ = (id) => document.getElementById(id);
 
 const stage = $("stage");
 const pictureView = new PictureView(stage, $("legend"), $("bar"));
-const solidView = new SolidView(stage);
+const solidView = new SolidView(stage, (layer) => bytesOf(last.id, `${layer}.bin`));
 const progress = new Progress($("progress"), cancel);
 const plan = new Plan(fail);
 
@@ -57,18 +57,19 @@ async function preview(signal) {
 }
 
 async function whole(signal) {
-    const flat = state().surface === "plate";
+    const { surface, thickness, force } = state(), flat = surface === "plate";
+    const files = force > 0 ? [...WHOLE_FILES, ...STRENGTH_FILES] : WHOLE_FILES;
     const picture = await pictureOf(state());
     const request = { ...job(picture), verb: "carve" };
-    const id = await run({ ...request, files: WHOLE_FILES }, "whole", signal, (name, fraction) => progress.tell(name, fraction));
+    const id = await run({ ...request, files }, "whole", signal, (name, fraction) => progress.tell(name, fraction));
     figures = await (await api.file(id, "figures.json", signal)).json();
     showThreshold(figures.input.threshold);
-    last = { id, request, files: new Set(WHOLE_FILES) };
+    last = { id, request, files: new Set(files) };
     showFigures();
     progress.hide();
     say("done", { seconds: figures.seconds.total.toFixed(2) });
     await showPictures(id, signal, true);
-    solidView.show(await (await api.file(id, "object.stl", signal)).arrayBuffer(), flat);
+    solidView.show(await bytesOf(id, "mesh.bin", signal), { flat, thickness, structure: figures.structure });
 }
 
 // A preview soon, the whole run when nothing changes for a while.

@@ -29,6 +29,9 @@ export async function bitmapOf(id, name, signal) {
     return createImageBitmap(await (await api.file(id, name, signal)).blob());
 }
 
+/** One file of a job, as an ArrayBuffer. */
+export const bytesOf = async (id, name, signal) => (await api.file(id, name, signal)).arrayBuffer();
+
 /** Several runs, one after the other in time and each a little later than the one before; a new plan takes the old one's place. */
 export class Plan {
     constructor(failed) {
