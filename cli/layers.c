@@ -122,11 +122,38 @@ static jali_status displacement_bin(jali_context *ctx, const made *m, jali_bytes
     return map_bin(ctx, m, JALI_DISPLACEMENT, bytes);
 }
 
+// The surface before it is carved, which a run uses up: it is opened again. What follows 2 in place of
+// colours: float32[3][2] a triangle, where its corners lie on the unrolled surface, and how long that is
+// around.
+static jali_status surface_bin(jali_context *ctx, const made *m, jali_bytes *bytes)
+{
+    jali_status status;
+    jali_surface s = {0};
+    const char *name = m->set[0].surface;
+    if (!name)
+        return fail(ctx, JALI_BAD_VALUE, "a plate has no surface to lay a picture on: surface says another");
+    TRY(jali_surface_open(ctx, name, NULL, &s, NULL));
+    TRY(append_mesh(ctx, &s.mesh, NULL, bytes));
+    if (!s.uv || s.textured) goto done;
+    bytes->data[16] = 2;
+    TRY(bytes_reserve(ctx, bytes, (size_t)s.mesh.triangle_count * 24 + 4));
+    for (int32_t t = 0; t < s.mesh.triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const double *at = s.uv[t][k];
+            TRY(bytes_append(ctx, bytes, (float[2]){(float)at[0], (float)at[1]}, 2 * sizeof(float)));
+        }
+    TRY(bytes_append(ctx, bytes, (float[1]){(float)s.around_mm}, sizeof(float)));
+done:
+    jali_surface_free(ctx, &s);
+    return status;
+}
+
 static const layer layers[] = {
     {"input.png", false, input_png},        {"bridges.png", false, bridges_png},
     {"conflicts.png", true, conflicts_png}, {"print.png", false, print_png},
     {"errors.png", false, errors_png},      {"mesh.bin", false, mesh_bin},
     {"stress.bin", false, stress_bin},      {"displacement.bin", false, displacement_bin},
+    {"surface.bin", false, surface_bin},
 };
 
 const layer *layer_list(int32_t *count)

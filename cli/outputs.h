@@ -6,7 +6,7 @@
 
 enum {
     OUTPUTS_BESIDE = 5, // figures, report, render, two maps
-    MOST_LAYERS = 8,
+    MOST_LAYERS = 9,
     MOST_FILES = MOST_OUTPUTS + OUTPUTS_BESIDE + MOST_LAYERS
 };
 

@@ -29,6 +29,7 @@ static const job_file files[] = {
     {"mesh.bin", "application/octet-stream", BY_LAYER, 0},
     {"stress.bin", "application/octet-stream", BY_LAYER, 0},
     {"displacement.bin", "application/octet-stream", BY_LAYER, 0},
+    {"surface.bin", "application/octet-stream", BY_LAYER, 0},
     {0},
 };
 

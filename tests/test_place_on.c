@@ -212,6 +212,32 @@ TEST(a_picture_around_leaves_a_bar)
     jali_surface_free(ctx, &s);
 }
 
+// Facets are as tall as the shape: the place counts, not the facet.
+TEST(a_wrapped_picture_goes_where_it_is_said)
+{
+    static const char *const surfaces[] = {"cylinder:r=30,h=90", "cone:r=40,top=25,h=90", "sphere:r=45",
+                                           "vase:h=120"};
+    lying l;
+    for (int i = 0; i < 4; i++) {
+        jali_surface s = surface_of(surfaces[i]);
+        for (int n = 0; n < 5; n++) {
+            jali_place_options opt = jali_place_defaults();
+            double angle = 0.7 * n - 1.4;
+            opt.placing = JALI_PLACE_WRAP;
+            opt.width_mm = 20;
+            opt.frame_mm = 1;
+            opt.at_given = true;
+            opt.at_mm[0] = 33 * sin(angle), opt.at_mm[1] = -33 * cos(angle), opt.at_mm[2] = 35 + 4.3 * n;
+            CHECK_OK(put(&s, &opt, 64, 64, &l));
+            const double *c = l.placed.centre_mm;
+            CHECK(fabs(atan2(c[0], -c[1]) - angle) < 0.01);
+            if (i == 0) CHECK(fabs(c[2] - opt.at_mm[2]) < 0.01 && fabs(hypot(c[0], c[1]) - 30) < 0.03);
+            take_away(&l);
+        }
+        jali_surface_free(ctx, &s);
+    }
+}
+
 TEST(a_view_is_found_and_hidden_parts_are_refused)
 {
     lying l;
@@ -301,6 +327,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_metric_follows_the_formulas, open_context, close_context),
         cmocka_unit_test_setup_teardown(a_perspective_is_true_at_its_centre, open_context, close_context),
+        cmocka_unit_test_setup_teardown(a_wrapped_picture_goes_where_it_is_said, open_context, close_context),
         cmocka_unit_test_setup_teardown(too_large_a_picture_is_refused_with_a_size_that_fits, open_context,
                                         close_context),
         cmocka_unit_test_setup_teardown(a_picture_around_leaves_a_bar, open_context, close_context),

@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <jansson.h>
+#include <math.h>
 #include <pthread.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -166,6 +167,36 @@ TEST(from_upload_to_a_solid_with_the_figures_of_the_command_line)
     r = file_of(&page, id, "errors.png");
     CHECK(memcmp(r.body, "\x89PNG", 4) == 0);
     reply_free(&r);
+}
+
+// By the head, a shape's corners follow with how long it is around, a model's do not.
+static void check_surface(const char *surface, size_t each_triangle, float around_mm)
+{
+    char id[64], json[256];
+    snprintf(json, sizeof json,
+             "\"verb\": \"adapt\", \"options\": {\"width\": 10, \"no-predict\": true, \"surface\": \"%s\"}, "
+             "\"files\": [\"surface.bin\"]",
+             surface);
+    start_job(&page, json, id);
+    end_job(&page, id, "done", 0, "surface.bin");
+    reply r = file_of(&page, id, "surface.bin");
+    int32_t head[3];
+    float last;
+    memcpy(head, r.body + 8, sizeof head);
+    memcpy(&last, r.body + r.size - sizeof last, sizeof last);
+    CHECK_INT(r.size,
+              20 + 12 * (size_t)head[0] + each_triangle * (size_t)head[1] + (head[2] == 2 ? sizeof last : 0));
+    CHECK(memcmp(r.body, "jalimesh", 8) == 0 && (head[2] == 0 || fabsf(last - around_mm) < 1e-4F));
+    reply_free(&r);
+}
+
+TEST(a_surface_is_there_to_lay_pictures_on)
+{
+    char id[64];
+    check_surface("cylinder:r=20,h=50", 36, 125.66371F);
+    check_surface("plate:w=60,h=60", 36, 0);
+    start_job(&page, "\"verb\": \"adapt\", \"files\": [\"surface.bin\"]", id);
+    end_job(&page, id, "failed", 2, "a plate has no surface");
 }
 
 TEST(a_mesh_is_carved_and_a_printer_is_named_or_given)
@@ -615,6 +646,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(from_upload_to_a_solid_with_the_figures_of_the_command_line),
+        cmocka_unit_test(a_surface_is_there_to_lay_pictures_on),
         cmocka_unit_test(a_mesh_is_carved_and_a_printer_is_named_or_given),
         cmocka_unit_test(a_job_fails_as_the_command_line_does),
         cmocka_unit_test(only_our_own_page_may_ask),

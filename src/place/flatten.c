@@ -8,6 +8,7 @@
 //          each face; that no two faces overlap is checked exactly where voids are cut.
 // Checked: tests/test_flatten.c: planes, cylinders, cones and caps against formulas; rough surfaces by seeds.
 #include "place/disc.h"
+#include "place/nearest.h"
 #include "place/lay.h"
 #include "base/vector.h"
 
@@ -44,63 +45,6 @@ static void face_edges(const jali_mesh *m, int32_t face, double a[3], double b[3
 }
 
 // --- Where the disc begins
-
-// The point of a segment nearest to p; its squared distance.
-static double nearest_on_side(const double a[3], const double b[3], const double p[3], double at[3])
-{
-    double e[3], r[3], away = 0;
-    for (int k = 0; k < 3; k++) {
-        e[k] = b[k] - a[k];
-        r[k] = p[k] - a[k];
-    }
-    double share = MIN(MAX(dot(r, e) / dot(e, e), 0), 1);
-    for (int k = 0; k < 3; k++) {
-        at[k] = a[k] + share * e[k];
-        away += (p[k] - at[k]) * (p[k] - at[k]);
-    }
-    return away;
-}
-
-static double nearest_on_face(const jali_mesh *m, int32_t face, const double p[3], double at[3])
-{
-    const double *corner = m->vertex[m->triangle[face][0]];
-    double a[3], b[3], r[3], n[3], side[3], least = INFINITY;
-    face_edges(m, face, a, b);
-    for (int k = 0; k < 3; k++) r[k] = p[k] - corner[k];
-    cross(a, b, n);
-    double nn = dot(n, n), inside[3];
-    cross(a, r, side);
-    inside[2] = dot(side, n) / nn;
-    cross(r, b, side);
-    inside[1] = dot(side, n) / nn;
-    inside[0] = 1 - inside[1] - inside[2];
-    if (inside[0] >= 0 && inside[1] >= 0 && inside[2] >= 0) {
-        double off = dot(r, n) / nn;
-        for (int k = 0; k < 3; k++) at[k] = p[k] - off * n[k];
-        return off * off * nn;
-    }
-    for (int k = 0; k < 3; k++) {
-        double here[3];
-        double away = nearest_on_side(m->vertex[m->triangle[face][k]],
-                                      m->vertex[m->triangle[face][(k + 1) % 3]], p, here);
-        if (away >= least) continue;
-        least = away;
-        memcpy(at, here, sizeof here);
-    }
-    return least;
-}
-
-static void find_nearest(flat_work *w)
-{
-    double least = INFINITY;
-    for (int32_t t = 0; t < w->surface->mesh.triangle_count; t++) {
-        double at[3], away = nearest_on_face(&w->surface->mesh, t, w->window->at_mm, at);
-        if (away >= least) continue;
-        least = away;
-        w->seed.face = t;
-        memcpy(w->seed.at, at, sizeof at);
-    }
-}
 
 // The mean normal over half the window, so that bumps do not tilt the picture, and the right hand of up
 // there.
@@ -375,7 +319,7 @@ jali_status lay_by_flattening(jali_context *ctx, const jali_surface *surface, co
     TRY(laid_create(ctx, surface, l));
     TRY(sides_create(ctx, mesh->vertex_count, mesh->triangle_count, (const int32_t(*)[3])mesh->triangle,
                      &w.linked));
-    find_nearest(&w);
+    w.seed.face = nearest_face(w.surface, w.window->at_mm, w.seed.at);
     TRY(try_scale(ctx, &w, 1));
     if (!fits(&w)) TRY(refuse(ctx, &w));
 done:

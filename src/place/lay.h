@@ -30,7 +30,7 @@ jali_status aim(jali_context *ctx, const jali_camera *opt, const double centre[3
 jali_status lay_by_camera(jali_context *ctx, const jali_surface *surface, const camera *c, laid *l);
 
 /// Lay the faces that have a place on the unrolled surface there.
-///   in     at_mm   the origin is the place of the nearest triangle's middle; NULL: the middle of all
+///   in     at_mm   the origin is the place nearest to it; NULL: the middle of all
 ///                  A texture is scaled so that lengths are true there
 jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, const double *at_mm, laid *l);
 

@@ -3,6 +3,8 @@
 //
 // Checked: tests/test_place_on.c, tests/test_flatten.c (textures).
 #include "place/lay.h"
+#include "place/nearest.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -21,26 +23,22 @@ static void middle_unrolled(const jali_surface *s, double uv[2])
     for (int i = 0; i < 2; i++) uv[i] = (low[i] + high[i]) / 2;
 }
 
-// The triangle of which the middle is nearest to a place, and where that lies on the unrolled surface.
-static int32_t nearest_unrolled(const jali_surface *s, const double at[3], double uv[2])
+// Where a place on a face lies on the unrolled surface.
+static void unrolled_at(const jali_surface *s, int32_t face, const double at[3], double uv[2])
 {
-    double nearest = INFINITY;
-    int32_t found = -1;
-    for (int32_t t = 0; t < s->mesh.triangle_count; t++) {
-        double away = 0;
-        if (isnan(s->uv[t][0][0])) continue;
-        for (int k = 0; k < 3; k++) {
-            double middle = 0;
-            for (int i = 0; i < 3; i++) middle += s->mesh.vertex[s->mesh.triangle[t][i]][k] / 3;
-            away += (middle - at[k]) * (middle - at[k]);
-        }
-        if (away >= nearest) continue;
-        nearest = away;
-        found = t;
+    const double *corner[3];
+    double part[3], whole = 0;
+    for (int k = 0; k < 3; k++) corner[k] = s->mesh.vertex[s->mesh.triangle[face][k]];
+    for (int k = 0; k < 3; k++) {
+        double n[3];
+        area_vector(at, corner[(k + 1) % 3], corner[(k + 2) % 3], n);
+        part[k] = sqrt(dot(n, n));
+        whole += part[k];
     }
-    for (int i = 0; i < 2 && found >= 0; i++)
-        uv[i] = (s->uv[found][0][i] + s->uv[found][1][i] + s->uv[found][2][i]) / 3;
-    return found;
+    for (int i = 0; i < 2; i++) {
+        uv[i] = 0;
+        for (int k = 0; k < 3; k++) uv[i] += part[k] / whole * s->uv[face][k][i];
+    }
 }
 
 // A texture has its own scale from place to place, and pieces that lie mirrored: make lengths true on the
@@ -77,7 +75,9 @@ jali_status lay_by_unrolling(jali_context *ctx, const jali_surface *surface, con
     TRY(laid_create(ctx, surface, l));
     l->around_mm = surface->around_mm;
     if (at_mm) {
-        int32_t face = nearest_unrolled(surface, at_mm, uv);
+        double on[3];
+        int32_t face = nearest_face(surface, at_mm, on);
+        unrolled_at(surface, face, on, uv);
         if (surface->textured) scale_texture(surface, face, uv, scale);
     } else
         middle_unrolled(surface, uv);
