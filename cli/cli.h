@@ -109,6 +109,8 @@ jali_status run_board(jali_context *ctx, const settings *set);
 jali_status run_predict(jali_context *ctx, const settings *set);
 jali_status run_serve(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
+jali_status run_read(jali_context *ctx, const settings *set);
+jali_status run_printer(jali_context *ctx, const settings *set);
 
 /// Draw a mesh as the settings say, as a PNG; appended.
 jali_status render_png(jali_context *ctx, const jali_mesh *mesh, const jali_render_options *view,

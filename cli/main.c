@@ -28,6 +28,8 @@ static const verb verbs[] = {
      "", run_analyse},
     {"adapt", "PICTURE", "make the picture printable, and stop there",
      IMAGE | GROUP_SURFACE | GROUP_JSON | GROUP_REPORT | OUTPUT_AND_RUN, ".png", run_adapt},
+    {"read", "PICTURE", "the picture in grey as the others see it: cropped, turned; and its grey levels",
+     GROUP_PICTURE | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png", run_read},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
      GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
     {"predict", "PICTURE|MASK",
@@ -44,6 +46,9 @@ static const verb verbs[] = {
     {"board", NULL, "the reference board, from which a printer's figures are measured",
      GROUP_BOARD | GROUP_RENDER | GROUP_VIEW | GROUP_SIDE | OUTPUT_AND_RUN, ".3mf.stl.svg.dxf.png",
      run_board},
+    {"printer", "NAME|FILE",
+     "a printer's profile in full: what it inherits, what was found in a slicer's configuration",
+     OUTPUT_AND_RUN, ".json", run_printer},
     {"calibrate", "WIDTHS", "a printer's profile from what was measured on a printed board",
      GROUP_CALIBRATE | GROUP_JSON | OUTPUT_AND_RUN, ".json", run_calibrate},
 #ifdef JALI_HAVE_SERVER

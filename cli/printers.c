@@ -1,5 +1,5 @@
-// The user's printer: --printer, what it means for the other options, and jali list printers.
-#include "cli.h"
+// The user's printer: --printer, what it means for the other options, jali printer and jali list printers.
+#include "outputs.h"
 #include "base/bytes.h"
 
 #include <dirent.h>
@@ -104,6 +104,27 @@ jali_status each_printer(jali_context *ctx, see_printer *see, void *user)
     if (folder.size > 0) TRY(each_own(ctx, (const char *)folder.data, see, user));
 done:
     jali_bytes_free(ctx, &folder);
+    return status;
+}
+
+// --- jali printer
+
+jali_status run_printer(jali_context *ctx, const settings *set)
+{
+    jali_status status;
+    jali_bytes folder = {0}, json = {0};
+    jali_printer printer;
+    output out[MOST_OUTPUTS];
+    TRY(printers_folder(ctx, &folder));
+    TRY(jali_printer_find(ctx, set->operand, (const char *)folder.data, &printer));
+    TRY(jali_printer_write(ctx, &printer, &json));
+    for (int32_t i = 0; i < set->output_count; i++) out[i] = (output){set->output[i], &json};
+    TRY(write_outputs(ctx, out, set->output_count));
+    say(set, "%s: phi %.3g / %.3g / %.3g mm; %s", printer.name, jali_printer_phi_e_mm(&printer),
+        printer.phi_s_mm.value, printer.phi_v_mm.value, printer.what);
+done:
+    jali_bytes_free(ctx, &folder);
+    jali_bytes_free(ctx, &json);
     return status;
 }
 

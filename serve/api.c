@@ -68,6 +68,14 @@ static enum MHD_Result answer_upload(server *s, struct MHD_Connection *connectio
                       json_pack("{s:s, s:I}", "id", id, "bytes", (json_int_t)e->wanted));
 }
 
+static enum MHD_Result answer_kept(server *s, struct MHD_Connection *connection, exchange *e)
+{
+    char name[MOST_NAME_BYTES + 1];
+    blob *bytes = store_find(s, e->part[0], name);
+    if (bytes) return reply_blob(connection, bytes, "application/octet-stream");
+    return reply_error(connection, MHD_HTTP_NOT_FOUND, "there is no upload of that id; send it again");
+}
+
 static enum MHD_Result answer_job(server *s, struct MHD_Connection *connection, exchange *e)
 {
     char why[MOST_MESSAGE_BYTES], id[TOKEN_BYTES];
@@ -133,6 +141,7 @@ static const route routes[] = {
     {"GET", "/api/v1/lists", 0, answer_lists},
     {"GET", "/api/v1/samples/*", 0, answer_sample},
     {"POST", "/api/v1/uploads", MOST_UPLOAD_BYTES, answer_upload},
+    {"GET", "/api/v1/uploads/*", 0, answer_kept},
     {"POST", "/api/v1/jobs", MOST_JSON_BYTES, answer_job},
     {"GET", "/api/v1/jobs/*", 0, answer_state},
     {"DELETE", "/api/v1/jobs/*", 0, answer_delete},

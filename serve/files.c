@@ -7,29 +7,32 @@
 #define FIELD(field) BY_FIELD, offsetof(settings, field)
 
 static const job_file files[] = {
-    {"figures.json", "application/json", FIELD(json)},
-    {"report.html", "text/html; charset=utf-8", FIELD(report)},
-    {"render.png", "image/png", FIELD(render)},
-    {"stress.png", "image/png", FIELD(map)},
-    {"stress.ply", "application/octet-stream", FIELD(map)},
-    {"stress.vtu", "application/octet-stream", FIELD(map)},
-    {"displacement.png", "image/png", FIELD(moved_map)},
-    {"displacement.ply", "application/octet-stream", FIELD(moved_map)},
-    {"displacement.vtu", "application/octet-stream", FIELD(moved_map)},
-    {"mask.png", "image/png", BY_SUFFIX, 0},
-    {"object.3mf", "model/3mf", BY_SUFFIX, 0},
-    {"object.stl", "model/stl", BY_SUFFIX, 0},
-    {"outline.svg", "image/svg+xml", BY_SUFFIX, 0},
-    {"outline.dxf", "image/vnd.dxf", BY_SUFFIX, 0},
-    {"input.png", "image/png", BY_LAYER, 0},
-    {"bridges.png", "image/png", BY_LAYER, 0},
-    {"conflicts.png", "image/png", BY_LAYER, 0},
-    {"print.png", "image/png", BY_LAYER, 0},
-    {"errors.png", "image/png", BY_LAYER, 0},
-    {"mesh.bin", "application/octet-stream", BY_LAYER, 0},
-    {"stress.bin", "application/octet-stream", BY_LAYER, 0},
-    {"displacement.bin", "application/octet-stream", BY_LAYER, 0},
-    {"surface.bin", "application/octet-stream", BY_LAYER, 0},
+    {"figures.json", "application/json", FIELD(json), NULL},
+    {"report.html", "text/html; charset=utf-8", FIELD(report), NULL},
+    {"render.png", "image/png", FIELD(render), NULL},
+    {"stress.png", "image/png", FIELD(map), NULL},
+    {"stress.ply", "application/octet-stream", FIELD(map), NULL},
+    {"stress.vtu", "application/octet-stream", FIELD(map), NULL},
+    {"displacement.png", "image/png", FIELD(moved_map), NULL},
+    {"displacement.ply", "application/octet-stream", FIELD(moved_map), NULL},
+    {"displacement.vtu", "application/octet-stream", FIELD(moved_map), NULL},
+    {"levels.json", "application/json", FIELD(json), "read"},
+    {"printer.json", "application/json", BY_SUFFIX, 0, "printer"},
+    {"grey.png", "image/png", BY_SUFFIX, 0, "read"},
+    {"mask.png", "image/png", BY_SUFFIX, 0, NULL},
+    {"object.3mf", "model/3mf", BY_SUFFIX, 0, NULL},
+    {"object.stl", "model/stl", BY_SUFFIX, 0, NULL},
+    {"outline.svg", "image/svg+xml", BY_SUFFIX, 0, NULL},
+    {"outline.dxf", "image/vnd.dxf", BY_SUFFIX, 0, NULL},
+    {"input.png", "image/png", BY_LAYER, 0, NULL},
+    {"bridges.png", "image/png", BY_LAYER, 0, NULL},
+    {"conflicts.png", "image/png", BY_LAYER, 0, NULL},
+    {"print.png", "image/png", BY_LAYER, 0, NULL},
+    {"errors.png", "image/png", BY_LAYER, 0, NULL},
+    {"mesh.bin", "application/octet-stream", BY_LAYER, 0, NULL},
+    {"stress.bin", "application/octet-stream", BY_LAYER, 0, NULL},
+    {"displacement.bin", "application/octet-stream", BY_LAYER, 0, NULL},
+    {"surface.bin", "application/octet-stream", BY_LAYER, 0, NULL},
     {0},
 };
 
@@ -49,6 +52,8 @@ bool ask_for_file(const job_file *file, const verb *v, settings *set, char sente
 {
     const char **field = (const char **)((char *)set + file->offset);
     bool object = (v->groups & GROUP_PLATE) != 0; // else there are pictures alone
+    bool makes = file->verb ? strcmp(file->verb, v->name) == 0 : (v->groups & GROUP_METHOD) != 0;
+    if (!makes) return wrong(sentence, "jali %s does not make %s", v->name, file->name);
     switch (file->how) {
     case BY_SUFFIX:
         if (!strstr(v->suffixes, strrchr(file->name, '.')))

@@ -14,7 +14,8 @@ enum {
 typedef struct job_file {
     const char *name, *type; // the type as HTTP says it
     enum { BY_SUFFIX, BY_FIELD, BY_LAYER } how;
-    size_t offset; // BY_FIELD: of the name in the settings
+    size_t offset;    // BY_FIELD: of the name in the settings
+    const char *verb; // that alone makes it; NULL: those that have a method do
 } job_file;
 
 /// All of them; NULL behind the last name.

@@ -110,13 +110,21 @@ static bool read_files(reading *r)
     return true;
 }
 
+static bool verb_is_fit(const char *name)
+{
+    static const char *const fit[] = {"carve", "adapt", "analyse", "read", "printer"};
+    for (size_t i = 0; i < sizeof fit / sizeof *fit; i++)
+        if (strcmp(name, fit[i]) == 0) return true;
+    return false;
+}
+
 static bool read_options(reading *r)
 {
     const char *name;
     json_t *options = json_object_get(r->root, "options");
     if (!text_of(r, "verb", 16, &name)) return false;
-    if (name && strcmp(name, "carve") && strcmp(name, "adapt") && strcmp(name, "analyse"))
-        return refuse(r, MHD_HTTP_BAD_REQUEST, "\"verb\" is carve, adapt or analyse");
+    if (name && !verb_is_fit(name))
+        return refuse(r, MHD_HTTP_BAD_REQUEST, "\"verb\" is carve, adapt, analyse, read or printer");
     if (options && !json_is_object(options))
         return refuse(r, MHD_HTTP_BAD_REQUEST, "\"options\" of a job is an object, such as {\"width\": 60}");
     json_t *given = options ? json_copy(options) : json_object();

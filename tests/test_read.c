@@ -302,6 +302,24 @@ TEST(otsu_splits_two_heaps_in_the_middle)
     jali_picture_free(ctx, &p);
 }
 
+TEST(levels_are_counted_and_say_where_auto_falls)
+{
+    int32_t threshold;
+    jali_levels levels;
+    jali_picture p = greys(70, 50);
+    for (int32_t i = 0; i < 3500; i++) p.grey[i] = (uint8_t)(i < 1000 ? 30 : i < 1200 ? 31 : 220);
+    CHECK_OK(jali_count_levels(ctx, &p, &levels));
+    CHECK_OK(jali_threshold(ctx, &p, NULL, &threshold));
+    CHECK_INT(levels.automatic, threshold);
+    for (int32_t v = 0; v < 256; v++)
+        CHECK_INT(levels.count[v], v == 30 ? 1000 : v == 31 ? 200 : v == 220 ? 2300 : 0);
+    memset(p.grey, 9, 3500);
+    CHECK_OK(jali_count_levels(ctx, &p, &levels));
+    CHECK_INT(levels.automatic, 0);
+    CHECK_INT(levels.count[9], 3500);
+    jali_picture_free(ctx, &p);
+}
+
 TEST(one_tone_is_refused_and_the_sentence_helps)
 {
     int32_t threshold;
@@ -385,14 +403,33 @@ TEST(a_written_bitmap_is_read_back)
     }
 }
 
+TEST(written_greys_are_read_back)
+{
+    uint64_t seed = 8;
+    for (int32_t width = 1; width <= 90; width += 1 + width / 7) {
+        jali_picture grey = greys(width, 9);
+        jali_bytes png = {0};
+        for (int32_t i = 0; i < 9 * width; i++) grey.grey[i] = (uint8_t)(next_random(&seed) >> 56);
+        CHECK_OK(jali_grey_png(ctx, width, 9, grey.grey, &png));
+        CHECK_OK(jali_read_bytes(ctx, png.data, png.size, "made", NULL, &picture));
+        CHECK_INT(picture.width_px, width);
+        CHECK(memcmp(picture.grey, grey.grey, 9 * (size_t)width) == 0);
+        jali_picture_free(ctx, &picture);
+        jali_picture_free(ctx, &grey);
+        jali_bytes_free(ctx, &png);
+    }
+}
+
 static jali_status read_and_threshold(jali_context *limited, void *data)
 {
     int32_t threshold;
+    jali_levels levels;
     jali_read_options opt = jali_read_defaults();
     jali_threshold_options local = {JALI_THRESHOLD_LOCAL, 0, 5, 0.2};
     (void)data;
     opt.quarter_turns = 1;
     jali_status status = jali_read_bytes(limited, file.bytes, file.size, "made", &opt, &picture);
+    if (status == JALI_OK) status = jali_count_levels(limited, &picture, &levels);
     if (status == JALI_OK) status = jali_threshold(limited, &picture, &local, &threshold);
     jali_picture_free(limited, &picture);
     return status;
@@ -441,10 +478,12 @@ int main(void)
         CASE(bombs_are_refused_by_their_header),
         CASE(crop_turn_mirror_and_invert),
         CASE(otsu_splits_two_heaps_in_the_middle),
+        CASE(levels_are_counted_and_say_where_auto_falls),
         CASE(one_tone_is_refused_and_the_sentence_helps),
         CASE(local_threshold_follows_the_light),
         CASE(local_threshold_is_its_definition),
         CASE(a_written_bitmap_is_read_back),
+        CASE(written_greys_are_read_back),
         CASE(each_allocation_may_be_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-// A bitmap as a PNG file in memory.
+// A bitmap, or grey levels or colours, as a PNG file in memory.
 #ifndef JALI_PNG_H
 #define JALI_PNG_H
 
@@ -22,6 +22,10 @@ JALI_API jali_status jali_bitmap_png(jali_context *ctx, const jali_bitmap *bitma
 ///   fails  JALI_BAD_VALUE (a side outside 1 .. 2^20 px), JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
 JALI_API jali_status jali_rgb_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *rgb,
                                   jali_bytes *bytes);
+
+/// The same of 8-bit grey levels, [height_px][width_px].
+JALI_API jali_status jali_grey_png(jali_context *ctx, int32_t width_px, int32_t height_px,
+                                   const uint8_t *grey, jali_bytes *bytes);
 
 #ifdef __cplusplus
 }

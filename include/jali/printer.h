@@ -62,8 +62,8 @@ JALI_API bool jali_printer_material(const jali_printer *printer, jali_material *
 /// Names of the profiles that are built in, in alphabetical order.
 JALI_API const char *const *jali_printer_names(int32_t *count);
 
-/// Does jali_printer_find take this for a file's name? So it does when it has a slash or ends in .json or
-/// .ini.
+/// Does jali_printer_find take this for a file's name? So it does when it has a slash or ends in .json, .ini
+/// or .gcode.
 JALI_API bool jali_printer_is_file(const char *name);
 
 /// Find a profile: a file (jali_printer_is_file), else NAME.json in the user's

@@ -69,6 +69,17 @@ JALI_API jali_threshold_options jali_threshold_defaults(void);
 JALI_API jali_status jali_threshold(jali_context *ctx, jali_picture *picture,
                                     const jali_threshold_options *opt, int32_t *threshold);
 
+/// How many pixels have each grey level, and where JALI_THRESHOLD_AUTO would put the threshold.
+typedef struct jali_levels {
+    uint64_t count[256];
+    int32_t automatic; // 1 .. 255; 0 when there is one level alone, which no threshold parts
+} jali_levels;
+
+/// Count a picture's grey levels.
+///   fails  JALI_NO_MEMORY, JALI_LIMIT
+///   cost   O(pixels)
+JALI_API jali_status jali_count_levels(jali_context *ctx, const jali_picture *picture, jali_levels *levels);
+
 /// The picture in black and white at its own resolution: white is grey >= threshold.
 JALI_API jali_status jali_binarise(jali_context *ctx, const jali_picture *picture, int32_t threshold,
                                    jali_bitmap *bitmap);

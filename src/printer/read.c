@@ -36,7 +36,7 @@ static bool ends_in(const char *text, const char *end)
 
 bool jali_printer_is_file(const char *name)
 {
-    return strchr(name, '/') || ends_in(name, ".json") || ends_in(name, ".ini");
+    return strchr(name, '/') || ends_in(name, ".json") || ends_in(name, ".ini") || ends_in(name, ".gcode");
 }
 
 static jali_status open_file(jali_context *ctx, profile_file *f)

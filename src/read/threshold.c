@@ -193,6 +193,19 @@ done:
     return status;
 }
 
+jali_status jali_count_levels(jali_context *ctx, const jali_picture *picture, jali_levels *levels)
+{
+    histogram h;
+    int32_t used = 0;
+    *levels = (jali_levels){0};
+    jali_status status = count_picture(ctx, picture, &h);
+    if (status != JALI_OK) return status;
+    memcpy(levels->count, h.count, sizeof h.count);
+    for (int32_t v = 0; v < LEVELS; v++) used += h.count[v] > 0;
+    levels->automatic = used > 1 ? otsu(&h) : 0;
+    return JALI_OK;
+}
+
 static jali_status check_options(jali_context *ctx, const jali_threshold_options *opt)
 {
     if (opt->method == JALI_THRESHOLD_FIXED && (opt->level < 0 || opt->level > 255))

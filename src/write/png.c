@@ -1,4 +1,4 @@
-// PNG: one bit a pixel straight from a bitmap, or 8-bit colours.
+// PNG: one bit a pixel straight from a bitmap, or 8-bit grey levels or colours.
 //
 // libpng allocates from the context and leaves errors by longjmp; they end as a status. No time, no text: the
 // same pixels give the same bytes.
@@ -18,7 +18,8 @@ typedef struct png_job {
     jali_status status; // why libpng was left; its sentence is set
     int32_t width_px, height_px;
     const jali_bitmap *bitmap; // or
-    const uint8_t *rgb;
+    const uint8_t *samples;    // 8 bits each, `channels` a pixel
+    int32_t channels;          // 1 or 3
     double pixel_mm;
 } png_job;
 
@@ -69,8 +70,9 @@ static void write_rows(png_job *job, png_structp png)
             if (job->status != JALI_OK) png_error(png, "stopped");
         }
         // The bytes of little-endian words run as the pixels do, the bits within a byte the other way round.
-        png_write_row(png, job->bitmap ? (png_const_bytep)(job->bitmap->word + y * job->bitmap->stride)
-                                       : job->rgb + 3 * (size_t)y * (size_t)job->width_px);
+        png_write_row(png, job->bitmap
+                               ? (png_const_bytep)(job->bitmap->word + y * job->bitmap->stride)
+                               : job->samples + (size_t)y * (size_t)job->width_px * (size_t)job->channels);
     }
 }
 
@@ -79,8 +81,9 @@ static void write_all(png_job *job, png_structp png, png_infop info)
     if (setjmp(png_jmpbuf(png))) return;
     png_set_write_fn(png, job, on_write, on_flush);
     png_set_user_limits(png, 1 << 20, 1 << 20);
+    bool grey = job->bitmap || job->channels == 1;
     png_set_IHDR(png, info, (png_uint_32)job->width_px, (png_uint_32)job->height_px, job->bitmap ? 1 : 8,
-                 job->bitmap ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 grey ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (job->bitmap) png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
     double pixels_per_metre = job->pixel_mm > 0 ? 1000 / job->pixel_mm : 0;
@@ -124,6 +127,23 @@ jali_status jali_bitmap_png(jali_context *ctx, const jali_bitmap *bitmap, double
 jali_status jali_rgb_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *rgb,
                          jali_bytes *bytes)
 {
-    png_job job = {.ctx = ctx, .bytes = bytes, .width_px = width_px, .height_px = height_px, .rgb = rgb};
+    png_job job = {.ctx = ctx,
+                   .bytes = bytes,
+                   .width_px = width_px,
+                   .height_px = height_px,
+                   .samples = rgb,
+                   .channels = 3};
+    return write_png(&job);
+}
+
+jali_status jali_grey_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *grey,
+                          jali_bytes *bytes)
+{
+    png_job job = {.ctx = ctx,
+                   .bytes = bytes,
+                   .width_px = width_px,
+                   .height_px = height_px,
+                   .samples = grey,
+                   .channels = 1};
     return write_png(&job);
 }
