@@ -20,7 +20,7 @@ static void square(void *shared, int32_t index)
     ((int32_t *)shared)[index] = index * index;
 }
 
-TEST(pool_calls_each_index_once)
+TEST(threads_of_a_pool_call_each_index_once)
 {
     int32_t result[500];
     for (int32_t round = 0; round < 50; round++) {
@@ -104,7 +104,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(arena_gives_back_what_a_stage_took, open_context, close_context),
-        cmocka_unit_test_setup_teardown(pool_calls_each_index_once, open_context, close_context),
+        cmocka_unit_test_setup_teardown(threads_of_a_pool_call_each_index_once, open_context, close_context),
         cmocka_unit_test_setup_teardown(memory_limit_is_a_sentence, open_context, close_context),
         cmocka_unit_test_setup_teardown(cancel_and_timeout_stop_the_next_step, open_context, close_context),
         cmocka_unit_test_setup_teardown(bad_context_options_are_refused, open_context, close_context),

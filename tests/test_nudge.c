@@ -180,7 +180,7 @@ static double run(const jali_bitmap *sample, double phi_e_void_mm, int32_t round
 
 // Whatever the printer: the error that a run reports is never above that without, the promises hold, and any
 // number of threads makes the same mask.
-TEST(samples_never_get_worse)
+TEST(samples_never_get_worse_with_any_threads)
 {
     static const char *const NAMES[] = {"girih", "tree", "lettering"};
     for (int k = 0; k < 3; k++) {
@@ -228,11 +228,8 @@ int main(void)
         cmocka_unit_test(a_growth_that_the_optimiser_did_not_know_is_taken_off),
         cmocka_unit_test(narrow_voids_that_print_narrower_are_drawn_wider),
         cmocka_unit_test(no_rounds_change_nothing),
-        cmocka_unit_test(samples_never_get_worse),
+        cmocka_unit_test(samples_never_get_worse_with_any_threads),
         cmocka_unit_test(every_allocation_may_be_refused),
     };
-#ifdef __SANITIZE_THREAD__
-    cmocka_set_test_filter("samples_*"); // ten times slower here, and the others show no more of races
-#endif
     return cmocka_run_group_tests(tests, open_context, close_context);
 }

@@ -113,7 +113,7 @@ static void check_framed(const jali_bitmap *picture, double pixel_mm, jali_conte
     jali_bitmap_free(ctx, &drawing);
 }
 
-TEST(random_pictures_end_in_one_printable_piece)
+TEST(random_pictures_end_in_one_piece_with_any_threads)
 {
     static const int32_t sizes[][2] = {{100, 90}, {63, 150}, {129, 64}, {200, 40}};
     static const double pixels_mm[] = {0.0375, 0.025, 0.03};
@@ -358,7 +358,7 @@ static bool is_golden(const char *sample, const uint64_t hash[2])
     return false;
 }
 
-TEST(the_samples_give_the_golden_masks)
+TEST(the_samples_give_the_golden_masks_with_any_threads)
 {
     int32_t count;
     const jali_sample_info *list = jali_sample_list(&count);
@@ -497,14 +497,14 @@ int main(void)
         cmocka_unit_test(the_paper_kernels_are_those_of_table_1),
         cmocka_unit_test(the_judge_sees_a_bar_that_is_too_thin),
         cmocka_unit_test(the_judge_tells_long_tips_from_short_ones),
-        cmocka_unit_test(random_pictures_end_in_one_printable_piece),
+        cmocka_unit_test(random_pictures_end_in_one_piece_with_any_threads),
         cmocka_unit_test(random_pictures_without_a_frame),
         cmocka_unit_test(random_pictures_for_a_laser),
         cmocka_unit_test(a_laser_cuts_bars_as_they_are_drawn),
         cmocka_unit_test(a_mask_that_opening_leaves_alone_is_mended_too),
         cmocka_unit_test(degenerate_pictures),
         cmocka_unit_test(a_picture_of_which_nothing_would_print_gets_a_sentence),
-        cmocka_unit_test(the_samples_give_the_golden_masks),
+        cmocka_unit_test(the_samples_give_the_golden_masks_with_any_threads),
         cmocka_unit_test(real_pictures_keep_the_promises),
         cmocka_unit_test(bad_values_are_a_sentence),
         cmocka_unit_test(every_allocation_refused_once),

@@ -450,8 +450,5 @@ int main(void)
         cmocka_unit_test(any_number_of_threads_finds_the_same),
         cmocka_unit_test(scan_survives_refused_memory),
     };
-#ifdef __SANITIZE_THREAD__
-    cmocka_set_test_filter("*threads*"); // ten times slower here, and the others show no more of races
-#endif
     return cmocka_run_group_tests(tests, open_context, close_context);
 }

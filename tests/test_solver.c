@@ -304,7 +304,7 @@ static void *solve_alone(void *shared)
     return NULL;
 }
 
-TEST(contexts_at_once_give_the_same_bytes)
+TEST(threads_at_once_give_the_same_bytes)
 {
     double alone[HASHED][2], sum[AT_ONCE][HASHED][2];
     pthread_t thread[AT_ONCE];
@@ -364,7 +364,7 @@ int main(void)
         cmocka_unit_test(what_is_not_positive_definite_is_refused),
         cmocka_unit_test(limits_are_kept),
         cmocka_unit_test(held_nodes_lonely_ones_and_many_pieces_are_solved),
-        cmocka_unit_test(contexts_at_once_give_the_same_bytes),
+        cmocka_unit_test(threads_at_once_give_the_same_bytes),
         cmocka_unit_test(random_numbers_of_the_host_go_on_as_they_were),
         cmocka_unit_test(every_allocation_may_fail),
     };

@@ -249,7 +249,7 @@ static void check_random(const char *what, metric_of metric, judge_length length
     free(chart.metric);
 }
 
-TEST(random_pictures_on_a_cylinder)
+TEST(random_pictures_on_a_cylinder_with_any_threads)
 {
     check_random("cylinder", cylinder_metric, cylinder_length, 31);
 }
@@ -323,7 +323,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cap_has_the_same_smallest_widths_at_pole_and_rim),
-        cmocka_unit_test(random_pictures_on_a_cylinder),
+        cmocka_unit_test(random_pictures_on_a_cylinder_with_any_threads),
         cmocka_unit_test(random_pictures_on_waves),
         cmocka_unit_test(a_metric_that_is_the_identity_changes_nothing),
         cmocka_unit_test(every_allocation_refused_once),

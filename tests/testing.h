@@ -25,6 +25,14 @@
 // The context of a test; a test that wants another makes its own.
 static jali_context *ctx;
 
+#ifdef __SANITIZE_THREAD__
+// Ten times slower: here a program runs what is about threads, and the names of those tests say so.
+__attribute__((constructor)) static void choose_tests(void)
+{
+    cmocka_set_test_filter("*threads*");
+}
+#endif
+
 static inline void check_ok(jali_status status, const char *what, const char *file, int line)
 {
     if (status != JALI_OK) print_error("%s: status %d: %s\n", what, status, jali_message(ctx));
