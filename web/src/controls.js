@@ -1,118 +1,100 @@
-// The form: every value has a label, every slider a number box beside it.
+// The form: what of the picture, how large, by which printer, on what, and what it bears.
 
-import { make, freshId } from "./dom.js";
-import { change, state } from "./state.js";
+import { make } from "./dom.js";
+import { check, forget, group, line, menu, note, onUpdate, picker, slider, updateFields } from "./fields.js";
+import { MODELS, PICTURES, PROFILES } from "./files.js";
+import { thresholdField } from "./levels.js";
+import { change, profileOf, state } from "./state.js";
 import { text } from "./strings.js";
 
-let found = 128; // the threshold that the last run chose by itself
-const updates = []; // each brings one control up to date with the state
-
-function slider(key, words, { min, max, step, unit, show }) {
-    const id = freshId(key);
-    const set = (event) => {
-        const value = Number(event.target.value);
-        if (event.target.value !== "" && Number.isFinite(value)) change({ [key]: Math.min(Math.max(value, min), max) });
-    };
-    const limits = { min, max, step };
-    const range = make("input", { type: "range", ...limits, oninput: set, "aria-label": text(words), tabindex: 0 });
-    const box = make("input", { type: "number", id, ...limits, onchange: set, inputmode: "decimal" });
-    const row = make("div", { class: "field" },
-        make("label", { for: id }, text(words)), make("span", { class: "pair" }, range, box, make("span", { class: "unit" }, unit ? text(unit) : "")));
-    updates.push((s) => {
-        row.hidden = show ? !show(s) : false;
-        range.value = s[key];
-        if (document.activeElement !== box) box.value = s[key];
+function gallery(lists) {
+    const root = make("div", { class: "gallery", role: "group", "aria-label": text("samples") },
+        lists.samples.map(({ name, what }) => make("button", { type: "button", title: what, "data-sample": name,
+            onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "" }) }, name)));
+    onUpdate((s) => {
+        for (const button of root.children) button.setAttribute("aria-pressed", String(button.dataset.sample === s.sample));
     });
-    return row;
+    return root;
 }
 
-function check(key, words) {
-    const box = make("input", { type: "checkbox", onchange: () => change({ [key]: box.checked }) });
-    updates.push((s) => { box.checked = s[key]; });
-    return make("label", { class: "check" }, box, text(words));
-}
-
-function menu(key, words, choices) {
-    const id = freshId(key);
-    const select = make("select", { id, onchange: () => change({ [key]: select.value }) },
-        choices.map(([value, label]) => make("option", { value }, label)));
-    updates.push((s) => { select.value = s[key]; });
-    return make("div", { class: "field" }, make("label", { for: id }, text(words)), select);
-}
-
-function threshold() {
-    const id = freshId("threshold");
-    const automatic = make("input", { type: "checkbox", onchange: () => change({ threshold: automatic.checked ? "auto" : "128" }) });
-    const set = (event) => event.target.value !== "" && change({ threshold: String(Math.min(Math.max(Math.round(event.target.value), 1), 255)) });
-    const range = make("input", { type: "range", min: 1, max: 255, oninput: set, "aria-label": text("threshold") });
-    const box = make("input", { type: "number", id, min: 1, max: 255, onchange: set });
-    updates.push((s) => {
-        automatic.checked = s.threshold === "auto";
-        range.disabled = box.disabled = automatic.checked;
-        range.value = box.value = automatic.checked ? found : s.threshold;
+// Turning also turns what is cropped: the crop counts the picture's own pixels.
+function shapeRow(openCrop) {
+    const tool = (words, id, onclick) => make("button", { type: "button", class: "tool", id, onclick }, text(words));
+    const mirror = tool("mirror", "mirror", () => change({ mirror: !state().mirror }));
+    const crop = tool("crop", "crop", openCrop);
+    onUpdate((s) => {
+        mirror.setAttribute("aria-pressed", String(s.mirror));
+        crop.setAttribute("aria-pressed", String(s.crop !== ""));
     });
-    return make("div", { class: "field" }, make("label", { for: id }, text("threshold")),
-        make("span", { class: "pair" }, range, box), make("label", { class: "check" }, automatic, text("auto")));
+    return make("div", { class: "tool-row" }, crop, tool("rotate", "rotate", () => change({ rotate: (state().rotate + 90) % 360 })), mirror);
 }
 
-const group = (words, ...children) => make("fieldset", {}, make("legend", {}, text(words)), ...children);
+const pictureGroup = (lists, take, openCrop) => group("picture",
+    picker("choose", `${PICTURES},.jali`, take, true), make("p", { class: "hint" }, text("orDrop")), gallery(lists),
+    shapeRow(openCrop), thresholdField(), check("invert", "invert"));
 
-function pictureGroup(lists, takeFile) {
-    const input = make("input", { type: "file", class: "hidden-input", id: freshId("picture"),
-        accept: "image/png,image/jpeg,image/webp,image/svg+xml,.pbm,.pgm,.ppm",
-        onchange: () => input.files[0] && takeFile(input.files[0]) });
-    const gallery = make("div", { class: "gallery", role: "group", "aria-label": text("samples") },
-        lists.samples.map(({ name, what }) => make("button", { type: "button", title: what, onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "" }), "data-sample": name }, name)));
-    updates.push((s) => {
-        for (const button of gallery.children) button.setAttribute("aria-pressed", String(button.dataset.sample === s.sample));
-    });
-    return group("picture",
-        make("label", { class: "button wide", for: input.id }, text("choose")), input,
-        make("p", { class: "hint" }, text("orDrop")), gallery, threshold(), check("invert", "invert"),
-        make("div", { class: "field" }, make("span", { class: "label" }, text("rotate")),
-            make("button", { type: "button", onclick: () => change({ rotate: (state().rotate + 90) % 360 }) }, "90°")));
+// The printers by process, then one's own.
+function printerChoices(lists) {
+    const kinds = new Map();
+    for (const p of lists.printers) {
+        const kind = p.own ? text("ownPrinters") : text(`process_${p.process || "none"}`);
+        if (!kinds.has(kind)) kinds.set(kind, []);
+        kinds.get(kind).push([p.name, p.name]);
+    }
+    return [...kinds, [text("ownPrinters"), [["file", text("ownFile")], ["", text("ownPrinter")]]]];
 }
 
-function printerGroup(lists) {
-    const own = (s) => s.printer === "";
+const round = (value) => Number(value.toFixed(3));
+
+// What the chosen printer is, in words and in its three figures.
+function printerWords(s, lists) {
+    if (s.printer === "") return "";
+    if (s.printer === "file" && !profileOf(s)) return text("noProfile");
+    const profile = s.printer === "file" ? profileOf(s) : null, value = (key) => profile[key].value ?? profile[key];
+    const p = profile ? { what: `${profile.name}: ${profile.what ?? ""}`, phi_e_mm: (value("phi_e_solid_mm") + value("phi_e_void_mm")) / 2,
+        phi_s_mm: value("phi_s_mm"), phi_v_mm: value("phi_v_mm") } : lists.printers.find((one) => one.name === s.printer);
+    return p ? `${p.what}. ${text("phis", { solid: round(p.phi_s_mm), hollow: round(p.phi_v_mm), growth: round(p.phi_e_mm) })}` : "";
+}
+
+function printerGroup(lists, take) {
+    const figures = (s) => s.printer === "";
     return group("size",
         slider("width", "width", { min: 10, max: 300, step: 1, unit: "mm" }),
         slider("frame", "frame", { min: 0, max: 20, step: 0.5, unit: "mm" }),
         slider("thickness", "thickness", { min: 0.4, max: 20, step: 0.2, unit: "mm" }),
-        menu("printer", "printer", [...lists.printers.map((p) => [p.name, p.name]), ["", text("ownPrinter")]]),
-        slider("phi-e", "phi_e", { min: -0.5, max: 1, step: 0.01, unit: "mm", show: own }),
-        slider("phi-s", "phi_s", { min: 0.05, max: 3, step: 0.05, unit: "mm", show: own }),
-        slider("phi-v", "phi_v", { min: 0.05, max: 3, step: 0.05, unit: "mm", show: own }),
+        menu("printer", "printer", printerChoices(lists)), note((s) => printerWords(s, lists)),
+        make("div", { class: "tool-row" }, picker("chooseProfile", PROFILES, take)),
+        slider("phi-e", "phi_e", { min: -0.5, max: 1, step: 0.01, unit: "mm", show: figures }),
+        slider("phi-s", "phi_s", { min: 0.05, max: 3, step: 0.05, unit: "mm", show: figures }),
+        slider("phi-v", "phi_v", { min: 0.05, max: 3, step: 0.05, unit: "mm", show: figures }),
         check("nudge", "nudge"));
 }
 
-function surfaceGroup() {
-    const round = (s) => s.surface !== "plate";
+const isPoint = (value) => value === "" || /^-?[\d.]+(,-?[\d.]+){2}$/.test(value);
+
+function surfaceGroup(take) {
+    const round_ = (s) => s.surface !== "plate" && s.surface !== "mesh", mesh = (s) => s.surface === "mesh", curved = (s) => s.surface !== "plate";
     return group("surface",
-        menu("surface", "surface", ["plate", "cylinder", "vase", "cone", "sphere"].map((name) => [name, text(name)])),
-        slider("radius", "radius", { min: 10, max: 150, step: 1, unit: "mm", show: round }),
-        slider("height", "height", { min: 20, max: 400, step: 5, unit: "mm", show: (s) => round(s) && s.surface !== "sphere" }));
+        menu("surface", "surface", ["plate", "cylinder", "vase", "cone", "sphere", "mesh"].map((name) => [name, text(name)])),
+        note((s) => (s.mesh ? s.meshName : text("noMesh")), mesh),
+        make("div", { class: "tool-row" }, picker("chooseMesh", MODELS, take)),
+        slider("radius", "radius", { min: 10, max: 150, step: 1, unit: "mm", show: round_ }),
+        slider("height", "height", { min: 20, max: 400, step: 5, unit: "mm", show: (s) => round_(s) && s.surface !== "sphere" }),
+        slider("meshHeight", "meshHeight", { min: 0, max: 400, step: 1, unit: "mm", show: mesh }),
+        slider("meshTurn", "meshTurn", { min: -180, max: 180, step: 1, unit: "degree", show: mesh }),
+        menu("meshUp", "meshUp", ["z", "y", "x", "-z", "-y", "-x"].map((axis) => [axis, axis]), { show: mesh }),
+        menu("place", "place", ["auto", "project", "wrap"].map((way) => [way, text(`place_${way}`)]), { show: curved }),
+        line("at", "at", { show: curved, fits: isPoint, placeholder: text("found"), hint: "atHint" }),
+        line("dir", "dir", { show: (s) => curved(s) && (s.place === "project" || (mesh(s) && s.place === "auto")), fits: isPoint, placeholder: text("found") }));
 }
 
-function strengthGroup(lists) {
-    return group("strength",
-        slider("force", "force", { min: 0, max: 500, step: 5, unit: "newton" }),
-        menu("material", "material", lists.materials.map((m) => [m.name, m.name])));
-}
+const strengthGroup = (lists) => group("strength",
+    slider("force", "force", { min: 0, max: 500, step: 5, unit: "newton" }),
+    menu("material", "material", lists.materials.map((m) => [m.name, m.name])));
 
 /** Fill the form anew, in the language that is set. */
-export function showControls(form, lists, takeFile) {
-    updates.length = 0;
-    form.replaceChildren(pictureGroup(lists, takeFile), printerGroup(lists), surfaceGroup(), strengthGroup(lists));
-    updateControls();
-}
-
-export function updateControls() {
-    for (const update of updates) update(state());
-}
-
-/** Show the threshold that a run has found. */
-export function showThreshold(level) {
-    found = level;
-    updateControls();
+export function showControls(form, lists, { take, openCrop }) {
+    forget();
+    form.replaceChildren(pictureGroup(lists, take, openCrop), printerGroup(lists, take), surfaceGroup(take), strengthGroup(lists));
+    updateFields();
 }

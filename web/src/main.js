@@ -4,8 +4,11 @@
 // key, so the server stops the one before: the newest wins.
 
 import * as api from "./api.js";
-import { showControls, showThreshold, updateControls } from "./controls.js";
-import { listenForFiles, pictureOf, uploadPicture } from "./files.js";
+import { showControls } from "./controls.js";
+import { Crop } from "./crop.js";
+import { updateFields } from "./fields.js";
+import { greyOf, levelsOf, listenForFiles, pictureOf, taken } from "./files.js";
+import { showLevels, showThreshold } from "./levels.js";
 import { PictureView } from "./picture-view.js";
 import { Progress } from "./progress.js";
 import { showResults } from "./results.js";
@@ -15,17 +18,19 @@ import { canRedo, canUndo, change, commandLine, job, onChange, readAddress, redo
 import { fillWords, language, setLanguage, text } from "./strings.js";
 
 const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
-const PREVIEW_AFTER_MS = 40, WHOLE_AFTER_MS = 350;
+const LEVELS_AFTER_MS = 10, PREVIEW_AFTER_MS = 40, WHOLE_AFTER_MS = 350;
 const $ = (id) => document.getElementById(id);
 
 const stage = $("stage");
 const pictureView = new PictureView(stage, $("legend"), $("bar"));
 const solidView = new SolidView(stage, (layer) => bytesOf(last.id, `${layer}.bin`));
+const crop = new Crop(stage, (part) => change({ crop: part }), (hadFocus) => { selectView("picture"); if (hadFocus) $("crop").focus(); });
 const progress = new Progress($("progress"), cancel);
 const plan = new Plan(fail);
 
 let lists;
 let figures = null;
+let counted = ""; // what the grey levels shown are of
 let last = null; // the whole run that is shown: {id, request, files}
 
 const say = (key, values) => { $("status").textContent = text(key, values); };
@@ -64,6 +69,7 @@ async function whole(signal) {
     const id = await run({ ...request, files }, "whole", signal, (name, fraction) => progress.tell(name, fraction));
     figures = await (await api.file(id, "figures.json", signal)).json();
     showThreshold(figures.input.threshold);
+    updateFields();
     last = { id, request, files: new Set(files) };
     showFigures();
     progress.hide();
@@ -72,12 +78,21 @@ async function whole(signal) {
     solidView.show(await bytesOf(id, "mesh.bin", signal), { flat, thickness, structure: figures.structure });
 }
 
+// The grey levels, when they are others.
+async function levels(signal) {
+    const picture = await pictureOf(state()), key = [picture.id, state().crop, state().invert].join();
+    if (key === counted) return;
+    showLevels(await levelsOf(picture, signal));
+    counted = key;
+    updateFields();
+}
+
 // A preview soon, the whole run when nothing changes for a while.
 function begin() {
     if (!state().sample && !state().upload) return say("waiting");
     say("working");
     progress.show();
-    plan.begin([[preview, PREVIEW_AFTER_MS], [whole, WHOLE_AFTER_MS]]);
+    plan.begin([[levels, LEVELS_AFTER_MS], [preview, PREVIEW_AFTER_MS], [whole, WHOLE_AFTER_MS]]);
 }
 
 function cancel() {
@@ -88,7 +103,15 @@ function cancel() {
 
 async function takeFile(file) {
     say("uploading");
-    change({ sample: "", upload: await uploadPicture(file), uploadName: file.name });
+    change(await taken(file));
+}
+
+async function openCrop() {
+    const picture = await pictureOf(state());
+    if (!picture) return;
+    selectView("picture");
+    pictureView.root.hidden = true;
+    crop.open(await greyOf(picture), state());
 }
 
 // --- Results
@@ -117,6 +140,7 @@ async function download(name) {
 // --- The frame of it all
 
 function selectView(name) {
+    if (crop.isOpen) crop.close();
     for (const kind of ["picture", "solid"]) {
         const tab = $(`tab-${kind}`);
         tab.setAttribute("aria-selected", String(kind === name));
@@ -133,7 +157,7 @@ function showWords() {
     fillWords(document);
     pictureView.words();
     solidView.words();
-    showControls($("controls"), lists, (file) => takeFile(file).catch(fail));
+    showControls($("controls"), lists, { take: (file) => takeFile(file).catch(fail), openCrop: () => openCrop().catch(fail) });
     progress.words();
     showFigures();
 }
@@ -164,10 +188,10 @@ function listen() {
         setLanguage($("language").value);
         showWords();
     });
-    addEventListener("keydown", (event) => { if (event.key === "Escape" && progress.running) cancel(); });
+    addEventListener("keydown", (event) => { if (event.key === "Escape") { if (crop.isOpen) crop.close(); else if (progress.running) cancel(); } });
     listenForFiles($("drop"), (file) => takeFile(file).catch(fail));
     onChange(() => {
-        updateControls();
+        updateFields();
         $("undo").disabled = !canUndo();
         $("redo").disabled = !canRedo();
         begin();

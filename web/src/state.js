@@ -116,10 +116,20 @@ export function options(s = now, meshName = "model.mesh", profileName = "") {
     return Object.fromEntries(Object.entries(out).map(([key, value]) => [key, String(value)]));
 }
 
+/** The profile of one's own as an object; null when there is none, or what the address says is none. */
+export function profileOf(s = now) {
+    try {
+        const profile = JSON.parse(s.profile);
+        return typeof profile === "object" ? profile : null;
+    } catch {
+        return null;
+    }
+}
+
 /** A job's keys that say what to make of a picture: docs/serve.md, without verb and files. */
 export function job(picture, s = now) {
     return { picture: picture.id, name: picture.name, options: options(s),
-        ...(s.surface === "mesh" && s.mesh ? { mesh: s.mesh } : {}), ...(s.printer === "file" && s.profile ? { printer: JSON.parse(s.profile) } : {}) };
+        ...(s.surface === "mesh" && s.mesh ? { mesh: s.mesh } : {}), ...(s.printer === "file" && profileOf(s) ? { printer: profileOf(s) } : {}) };
 }
 
 const quoted = (word) => (/^[\w.,:=/+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
