@@ -3,6 +3,7 @@
 #include "options.h"
 #include "structure.h"
 #include "base/file.h"
+#include "raster/raster.h"
 #include "sparse/solver.h"
 
 #include <jali/png.h>
@@ -136,9 +137,7 @@ jali_status without_margin(jali_context *ctx, const jali_bitmap *mask, int32_t m
     jali_status status =
         jali_bitmap_create(ctx, mask->width_px - 2 * margin, mask->height_px - 2 * margin, picture);
     if (status != JALI_OK) return status;
-    for (int32_t y = 0; y < picture->height_px; y++)
-        for (int32_t x = 0; x < picture->width_px; x++)
-            if (jali_bitmap_get(mask, x + margin, y + margin)) jali_bitmap_set(picture, x, y, true);
+    cut_out(mask, margin, margin, picture);
     return JALI_OK;
 }
 

@@ -12,6 +12,9 @@
 #include <png.h>
 #include <setjmp.h>
 
+// A mask of 2800 x 2800 px: 6 ms and 80 KB; by zlib's usual level 6 20 ms and 69 KB.
+enum { BITMAP_LEVEL = 4 };
+
 typedef struct png_job {
     jali_context *ctx;
     jali_bytes *bytes;
@@ -85,7 +88,10 @@ static void write_all(png_job *job, png_structp png, png_infop info)
     png_set_IHDR(png, info, (png_uint_32)job->width_px, (png_uint_32)job->height_px, job->bitmap ? 1 : 8,
                  grey ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (job->bitmap) png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+    if (job->bitmap) {
+        png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
+        png_set_compression_level(png, BITMAP_LEVEL);
+    }
     double pixels_per_metre = job->pixel_mm > 0 ? 1000 / job->pixel_mm : 0;
     if (pixels_per_metre >= 1 && pixels_per_metre < INT32_MAX)
         png_set_pHYs(png, info, (png_uint_32)lround(pixels_per_metre), (png_uint_32)lround(pixels_per_metre),
