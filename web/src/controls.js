@@ -1,9 +1,11 @@
 // The form: what of the picture, how large, by which printer, on what, and what it bears.
 
 import { make } from "./dom.js";
-import { check, forget, group, line, menu, note, onUpdate, picker, slider, updateFields } from "./fields.js";
+import { check, forget, group, menu, note, onUpdate, picker, slider, updateFields } from "./fields.js";
 import { MODELS, PICTURES, PROFILES } from "./files.js";
 import { thresholdField } from "./levels.js";
+import { placingOf } from "./placing.js";
+import { vectorField } from "./placing-fields.js";
 import { change, profileOf, state } from "./state.js";
 import { text } from "./strings.js";
 
@@ -70,8 +72,6 @@ function printerGroup(lists, take) {
         check("nudge", "nudge"));
 }
 
-const isPoint = (value) => value === "" || /^-?[\d.]+(,-?[\d.]+){2}$/.test(value);
-
 function surfaceGroup(take) {
     const round_ = (s) => s.surface !== "plate" && s.surface !== "mesh", mesh = (s) => s.surface === "mesh", curved = (s) => s.surface !== "plate";
     return group("surface",
@@ -84,8 +84,8 @@ function surfaceGroup(take) {
         slider("meshTurn", "meshTurn", { min: -180, max: 180, step: 1, unit: "degree", show: mesh }),
         menu("meshUp", "meshUp", ["z", "y", "x", "-z", "-y", "-x"].map((axis) => [axis, axis]), { show: mesh }),
         menu("place", "place", ["auto", "project", "wrap"].map((way) => [way, text(`place_${way}`)]), { show: curved }),
-        line("at", "at", { show: curved, fits: isPoint, placeholder: text("found"), hint: "atHint" }),
-        line("dir", "dir", { show: (s) => curved(s) && (s.place === "project" || (mesh(s) && s.place === "auto")), fits: isPoint, placeholder: text("found") }));
+        vectorField("at", "at", { step: 1, show: curved, hint: "atHint" }),
+        vectorField("dir", "dir", { step: 0.1, show: (s) => curved(s) && placingOf(s) === "project" }));
 }
 
 const strengthGroup = (lists) => group("strength",

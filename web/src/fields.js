@@ -56,25 +56,6 @@ export function menu(key, words, choices, { show, set = (value) => change({ [key
     return row;
 }
 
-/** A line of text; what `fits` refuses is not taken and marked as wrong. */
-export function line(key, words, { show, fits = () => true, placeholder = "", hint }) {
-    const id = freshId(key), hintId = `${id}-hint`;
-    const box = make("input", { type: "text", id, placeholder, spellcheck: "false", "aria-describedby": hint ? hintId : null, onchange: () => {
-        const value = box.value.replaceAll(" ", "");
-        box.setAttribute("aria-invalid", String(!fits(value)));
-        if (fits(value)) change({ [key]: value });
-    } });
-    const row = make("div", { class: "field" }, make("label", { for: id }, text(words)), box,
-        hint ? make("p", { class: "hint", id: hintId }, text(hint)) : null);
-    hidable(row, show);
-    onUpdate((s) => {
-        if (document.activeElement === box && box.getAttribute("aria-invalid") === "true") return;
-        box.value = s[key];
-        box.removeAttribute("aria-invalid");
-    });
-    return row;
-}
-
 /** A button that opens the file picker. */
 export function picker(words, accept, take, main) {
     const input = make("input", { type: "file", class: "hidden-input", id: freshId("file"), accept,

@@ -10,6 +10,8 @@ import { updateFields } from "./fields.js";
 import { greyOf, levelsOf, listenForFiles, pictureOf, taken } from "./files.js";
 import { showLevels, showThreshold } from "./levels.js";
 import { PictureView } from "./picture-view.js";
+import { showPlace } from "./placing-fields.js";
+import { Placing } from "./placing.js";
 import { Progress } from "./progress.js";
 import { showResults } from "./results.js";
 import { Plan, bitmapOf, bytesOf, run } from "./runs.js";
@@ -25,6 +27,7 @@ const stage = $("stage");
 const pictureView = new PictureView(stage, $("legend"), $("bar"));
 const solidView = new SolidView(stage, (layer) => bytesOf(last.id, `${layer}.bin`));
 const crop = new Crop(stage, (part) => change({ crop: part }), (hadFocus) => { selectView("picture"); if (hadFocus) $("crop").focus(); });
+const placing = new Placing(solidView, { skin, size: sizeNow, picture: () => pictureView.before, found: () => figures?.place?.centre_mm });
 const progress = new Progress($("progress"), cancel);
 const plan = new Plan(fail);
 
@@ -68,6 +71,7 @@ async function whole(signal) {
     const request = { ...job(picture), verb: "carve" };
     const id = await run({ ...request, files }, "whole", signal, (name, fraction) => progress.tell(name, fraction));
     figures = await (await api.file(id, "figures.json", signal)).json();
+    showPlace(figures.place);
     showThreshold(figures.input.threshold);
     updateFields();
     last = { id, request, files: new Set(files) };
@@ -114,6 +118,20 @@ async function openCrop() {
     crop.open(await greyOf(picture), state());
 }
 
+// The surface to lay pictures on, whether or not the present one fits there: that of a small one.
+async function skin() {
+    const request = job(await pictureOf(state()));
+    const options = { surface: request.options.surface, width: "5", frame: "0", "no-predict": "true" };
+    const id = await run({ ...request, verb: "adapt", files: ["surface.bin"], options }, "surface");
+    return bytesOf(id, "surface.bin");
+}
+
+// The picture's size in mm, by its shape in the last run.
+function sizeNow() {
+    const [width, height] = figures?.size_mm ?? [1, 1];
+    return [state().width, (state().width * height) / width];
+}
+
 // --- Results
 
 function showFigures() {
@@ -157,6 +175,7 @@ function showWords() {
     fillWords(document);
     pictureView.words();
     solidView.words();
+    placing.words();
     showControls($("controls"), lists, { take: (file) => takeFile(file).catch(fail), openCrop: () => openCrop().catch(fail) });
     progress.words();
     showFigures();
@@ -192,6 +211,7 @@ function listen() {
     listenForFiles($("drop"), (file) => takeFile(file).catch(fail));
     onChange(() => {
         updateFields();
+        placing.refresh();
         $("undo").disabled = !canUndo();
         $("redo").disabled = !canRedo();
         begin();

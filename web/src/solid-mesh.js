@@ -2,16 +2,18 @@
 
 const HEAD_BYTES = 20;
 
-/** The arrays of a mesh, views of the buffer: nothing is copied. `low` and `high` are the corners of its box. */
+/** The arrays of a mesh, views of the buffer: nothing is copied. `low` and `high` are the corners of its box; of a shape,
+ *  `uv` says where the corners of its triangles lie unrolled, which is `around` mm long. */
 export function readMesh(buffer) {
     const view = new DataView(buffer), word = new TextDecoder().decode(new Uint8Array(buffer, 0, 8));
-    const vertices = view.getInt32(8, true), triangles = view.getInt32(12, true), coloured = view.getInt32(16, true) === 1;
-    const size = HEAD_BYTES + vertices * (coloured ? 16 : 12) + triangles * 12;
+    const vertices = view.getInt32(8, true), triangles = view.getInt32(12, true), more = view.getInt32(16, true);
+    const end = HEAD_BYTES + 12 * (vertices + triangles), size = end + [0, 4 * vertices, 24 * triangles + 4][more];
     if (word !== "jalimesh" || buffer.byteLength !== size) throw new TypeError("no mesh of ours");
     const position = new Float32Array(buffer, HEAD_BYTES, 3 * vertices);
     const index = new Uint32Array(buffer, HEAD_BYTES + 12 * vertices, 3 * triangles);
-    const colour = coloured ? new Uint8Array(buffer, HEAD_BYTES + 12 * (vertices + triangles), 4 * vertices) : null;
-    return { position, index, colour, ...boxOf(position) };
+    const colour = more === 1 ? new Uint8Array(buffer, end, 4 * vertices) : null;
+    const uv = more === 2 ? new Float32Array(buffer, end, 6 * triangles) : null;
+    return { position, index, colour, uv, around: uv ? view.getFloat32(size - 4, true) : 0, ...boxOf(position) };
 }
 
 function boxOf(position) {

@@ -20,7 +20,8 @@ const SIDES = { perspective: [0.42, -1, 0.3], front: [0, -1, 0], back: [0, 1, 0]
 const TURN_MS = 260, KEY_STEP = 0.15, ROOM = 1.22; // what the object leaves free around it, for its dimensions
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-function geometryOf(mesh) {
+/** A mesh of the server's as three.js draws it. */
+export function geometryOf(mesh) {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(mesh.position, 3));
     if (mesh.colour) geometry.setAttribute("color", new BufferAttribute(mesh.colour, 4, true));
@@ -58,10 +59,12 @@ export class SolidView {
         this.canvas.setAttribute("role", "img");
         this.layers = make("div", { class: "layers", role: "group" });
         this.bar = make("div", { class: "sides", role: "group" });
+        this.tools = make("div", { class: "sides" }); // what others add
+        this.whenShown = () => {};
         this.cards = make("div", { class: "cards" });
         this.root.append(this.canvas);
         this.marks = new Marks(this.root);
-        this.root.append(make("div", { class: "solid-bar" }, this.layers, this.bar), this.cards);
+        this.root.append(make("div", { class: "solid-bar" }, this.layers, this.bar, this.tools), this.cards);
         this.furnish();
         new ResizeObserver(() => this.resize()).observe(stage);
         this.canvas.addEventListener("keydown", (event) => this.turnByKey(event));
@@ -160,19 +163,27 @@ export class SolidView {
             if (this.run !== run) return;
             this.meshes[name] = mesh;
         }
-        if (this.layer === name) this.put(this.meshes[name]);
+        if (this.layer !== name) return;
+        this.put(this.meshes[name]);
+        this.whenShown();
     }
 
     put(mesh) {
-        for (const old of [...this.object.children]) {
-            old.geometry.dispose();
-            old.removeFromParent();
-        }
-        this.object.add(new Mesh(geometryOf(mesh), mesh.colour ? this.map : this.stone));
-        if (mesh.colour && !this.run.flat) this.object.add(new Mesh(geometryOf(this.meshes.object), this.shade));
-        this.light(this.lit);
+        const group = new Group().add(new Mesh(geometryOf(mesh), mesh.colour ? this.map : this.stone));
+        if (mesh.colour && !this.run.flat) group.add(new Mesh(geometryOf(this.meshes.object), this.shade));
+        this.replace(group);
         this.marks.weakest = mesh.colour ? this.weakestOf(mesh) : null;
         this.draw();
+    }
+
+    /** Show something else in the object's place. */
+    replace(group) {
+        for (const old of [...this.object.children]) {
+            for (const part of old.children) part.geometry.dispose();
+            old.removeFromParent();
+        }
+        this.object.add(group);
+        this.light(this.lit);
     }
 
     weakestOf(mesh) {

@@ -85,7 +85,8 @@ const SHAPES = {
 
 // A model that was uploaded is called so in a job (docs/serve.md), and by its own name on the command line.
 function meshSurface(s, name) {
-    const words = [["height", s.meshHeight || ""], ["up", s.meshUp === "z" ? "" : s.meshUp], ["turn", s.meshTurn || ""]];
+    const words = [["height", s.meshHeight || ""], ["up", s.meshUp === "z" ? "" : s.meshUp], ["turn", s.meshTurn || ""],
+        ["texture", s.place === "wrap" ? "no" : ""]]; // laid flat where one drags it, not where a texture would lie
     return [name, words.filter(([, value]) => value !== "").map(([key, value]) => `${key}=${value}`).join()].filter(Boolean).join(":");
 }
 
