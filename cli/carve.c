@@ -137,6 +137,12 @@ static void tell(jali_context *ctx, const made *m)
             "the wall is thinner than %g mm at %d places of the surface, %.3g mm at (%.4g, %.4g, %.4g) mm",
             set->wall.thickness_mm, wall->thinned, wall->thinnest_mm, wall->thinnest_at_mm[0],
             wall->thinnest_at_mm[1], wall->thinnest_at_mm[2]);
+    if (set->surface && wall->full_triangles > 0)
+        say(set,
+            "the wall is left full around %d triangles of the surface, where none would do, as at (%.4g, "
+            "%.4g, "
+            "%.4g) mm",
+            wall->full_triangles, wall->full_at_mm[0], wall->full_at_mm[1], wall->full_at_mm[2]);
     if (set->surface && wall->thinned > wall->vertices / 4)
         say(set, "much of it has no room for that wall: a model that is a thin wall already is better given "
                  "by its "

@@ -122,9 +122,10 @@ static json_t *surface_of(const made *m)
     const settings *set = &m->set[0];
     const jali_shell_report *wall = &m->object.wall;
     if (!set->surface) return json_null();
-    return json_pack("{s:s, s:f, s:f, s:o, s:i}", "name", set->surface, "thickness_mm",
+    return json_pack("{s:s, s:f, s:f, s:o, s:i, s:i}", "name", set->surface, "thickness_mm",
                      set->wall.thickness_mm, "thinnest_mm", wall->thinnest_mm, "thinnest_at_mm",
-                     vector_of(wall->thinnest_at_mm), "thinned", wall->thinned);
+                     vector_of(wall->thinnest_at_mm), "thinned", wall->thinned, "full_triangles",
+                     wall->full_triangles);
 }
 
 // What is said of each picture. A part that could not be made leaves the whole unmade: jansson's "o" of NULL

@@ -8,6 +8,8 @@
 
 static const double unit_mm = 1.0 / 65536;
 
+static bool *full_wanted; // by hollow, when it is set
+
 typedef struct hollowed {
     jali_mesh outer, both; // both skins and the walls along rims
     double (*inner)[3];    // within both
@@ -44,12 +46,12 @@ static jali_mesh with_walls(const jali_mesh *outer, const double (*inner)[3])
 static hollowed hollow(jali_mesh outer, double thickness_mm)
 {
     hollowed h = {.outer = outer};
-    const offset_options opt = {thickness_mm, 0.3, unit_mm};
+    const offset_options opt = {.thickness_mm = thickness_mm, .least_mm = 0.3, .unit_mm = unit_mm};
     for (int32_t v = 0; v < outer.vertex_count; v++)
         for (int k = 0; k < 3; k++) outer.vertex[v][k] = rint(outer.vertex[v][k] / unit_mm) * unit_mm;
     double(*inner)[3] = malloc((size_t)outer.vertex_count * sizeof *inner);
     h.thickness = malloc((size_t)outer.vertex_count * sizeof *h.thickness);
-    CHECK_OK(offset_inward(ctx, &outer, &opt, inner, h.thickness, &h.report));
+    CHECK_OK(offset_inward(ctx, &outer, &opt, inner, h.thickness, full_wanted, &h.report));
     h.both = with_walls(&outer, (const double(*)[3])inner);
     h.inner = h.both.vertex + outer.vertex_count;
     free(inner);
@@ -216,6 +218,46 @@ TEST(what_is_called_solved_is_a_solid)
     CHECK(solved >= 12);
 }
 
+// Spikes as close as the wall is thick: no wall will do there, and a full one does. Far from them all is as
+// ever.
+TEST(where_no_wall_will_do_it_is_left_full)
+{
+    int32_t filled = 0;
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        uint64_t random = seed;
+        jali_surface s;
+        CHECK_OK(jali_surface_open(ctx, "sphere:r=30,facets=96", NULL, &s, NULL));
+        for (int32_t v = 0; v < s.mesh.vertex_count; v++) {
+            double *p = s.mesh.vertex[v];
+            bool crumpled = p[1] > 26;
+            for (int k = 0; k < 3 && crumpled; k++)
+                p[k] += 1.9 * ((double)(next_random(&random) >> 40) / (1 << 24) - 0.5);
+        }
+        jali_check_report before;
+        CHECK_OK(jali_check(ctx, &s.mesh, NULL, &before));
+        release(ctx, s.uv);
+        bool *full = malloc((size_t)s.mesh.triangle_count * sizeof *full);
+        full_wanted = full;
+        hollowed h = hollow(s.mesh, 2);
+        CHECK(!before.solid || (h.check.solid && h.check.voids == 1 && h.report.unsolved_triangles == 0));
+        CHECK(h.check.volume_mm3 > 4.0 / 3 * M_PI * (30 * 30 * 30 - 28 * 28 * 28) * 0.95);
+        int32_t count = 0;
+        for (int32_t t = 0; t < h.outer.triangle_count; t++) {
+            count += full[t];
+            CHECK(!full[t] || h.outer.vertex[h.outer.triangle[t][0]][1] > 15);
+        }
+        for (int32_t v = 0; v < h.outer.vertex_count; v++)
+            CHECK(h.outer.vertex[v][1] > 0 || fabs(h.thickness[v] - 2) < 0.02);
+        CHECK_INT(count, h.report.full_triangles);
+        filled += before.solid && count > 0;
+        full_wanted = NULL;
+        free(full);
+        forget(&h);
+    }
+    print_message("%d of 12 left full in part\n", filled);
+    CHECK(filled >= 2);
+}
+
 TEST(faults_of_the_surface_itself_are_left_alone)
 {
     hollowed h = hollow(together(box_shape(0, 0, 0, 30, 30, 30), box_shape(20, 10, 25, 25, 20, 60)), 1);
@@ -227,8 +269,8 @@ TEST(faults_of_the_surface_itself_are_left_alone)
 static void offset_with(jali_context *other, const jali_mesh *mesh, double (*inner)[3])
 {
     offset_report report;
-    const offset_options opt = {3, 0.3, unit_mm};
-    CHECK_INT(offset_inward(other, mesh, &opt, inner, NULL, &report), JALI_OK);
+    const offset_options opt = {.thickness_mm = 3, .least_mm = 0.3, .unit_mm = unit_mm};
+    CHECK_INT(offset_inward(other, mesh, &opt, inner, NULL, NULL, &report), JALI_OK);
 }
 
 TEST(the_same_for_any_number_of_threads)
@@ -255,7 +297,7 @@ static jali_status offset_again(jali_context *limited, void *data)
     const jali_mesh *mesh = data;
     double inner[64][3];
     offset_report report;
-    return offset_inward(limited, mesh, &(offset_options){2, 0.3, unit_mm}, inner, NULL, &report);
+    return offset_inward(limited, mesh, &(offset_options){2, 0.3, NULL, unit_mm}, inner, NULL, NULL, &report);
 }
 
 TEST(every_refused_allocation_is_a_status)
@@ -310,6 +352,7 @@ int main(void)
         RUN(vertices_beside_a_crease_make_room),
         RUN(where_the_object_is_thin_so_is_the_wall),
         RUN(what_is_called_solved_is_a_solid),
+        RUN(where_no_wall_will_do_it_is_left_full),
         RUN(faults_of_the_surface_itself_are_left_alone),
         RUN(the_same_for_any_number_of_threads),
         RUN(every_refused_allocation_is_a_status),

@@ -25,7 +25,7 @@ JALI_API void jali_shell_free(jali_context *ctx, jali_shell *shell);
 typedef struct jali_shell_options {
     double thickness_mm; // of the wall; 2 (default), > 0
     double least_mm; // where the wall must be thinner, because it would fold or meet itself, at least this;
-                     // 0.3 (default), below it the surface is refused. Only over dents and spikes finer than
+                     // 0.3 (default), below it the wall is left full. Only over dents and spikes finer than
                      // the wall may it be thinner, in a point: the report's thinnest_mm says so
 } jali_shell_options;
 
@@ -35,18 +35,21 @@ JALI_API jali_shell_options jali_shell_defaults(void);
 typedef struct jali_shell_report {
     double thinnest_mm; // as thickness_mm where nothing is in the way
     double thinnest_at_mm[3];
-    int32_t vertices; // of the surface
-    int32_t thinned;  // vertices with less than the thickness
+    int32_t vertices;       // of the surface
+    int32_t thinned;        // vertices with less than the thickness
+    int32_t full_triangles; // of the surface, over which the wall is left full because none would do: no
+                            // picture may lie there
+    double full_at_mm[3];   // one of them
 } jali_shell_report;
 
 /// Hollow out a surface: give it an inner skin at the wall's thickness along the normals. Where that would
-/// fold or meet a skin, the wall is thinner.
+/// fold or meet a skin, the wall is thinner; where the least would too, it is left full.
 ///   inout  surface   moves into the shell (empty afterwards); its vertices are rounded to the shell's
 ///                    lattice
 ///          opt       NULL means the defaults
 ///   out    shell     neither skin meets itself or the other
 ///          report    may be NULL
-///   fails  JALI_BAD_VALUE, JALI_NO_RESULT (the least wall folds or meets a skin as well: where is in the
+///   fails  JALI_BAD_VALUE, JALI_NO_RESULT (neither the least wall nor a full one will do: where is in the
 ///          message), JALI_LIMIT, JALI_CANCELLED, JALI_NO_MEMORY
 JALI_API jali_status jali_shell_create(jali_context *ctx, jali_surface *surface,
                                        const jali_shell_options *opt, jali_shell *shell,

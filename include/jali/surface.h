@@ -84,6 +84,7 @@ typedef struct jali_surface_report {
     jali_finding degenerate_triangles; // without area: dropped
     jali_finding repeated_triangles;   // the three vertices of an earlier one, either way round: dropped
     jali_finding turned_triangles;     // turned over, to agree with their neighbours and face outwards
+    jali_finding merged;               // pairs of triangles that met where parts cross: those are one now
     // Left as it is:
     jali_finding open_edges;        // in one triangle only: rims, holes, cracks
     jali_finding crowded_edges;     // in three triangles or more
@@ -92,8 +93,8 @@ typedef struct jali_surface_report {
     jali_finding intersections;     // pairs of triangles that meet outside the vertex or edge they share
     bool intersections_capped;      // there are more than that
     int64_t faulty_triangles;
-    bool *faulty; // [triangles], touches a crowded edge or vertex or a misdirected edge, or meets another
-                  // triangle
+    bool *faulty; // [triangles], touches a crowded edge or vertex or a misdirected edge, meets another
+                  // triangle, or lies along a line where parts that crossed were made one
 } jali_surface_report;
 
 JALI_API void jali_surface_report_free(jali_context *ctx, jali_surface_report *report);

@@ -34,7 +34,7 @@ static jali_status refuse_wall(jali_context *ctx, const jali_mesh *mesh, const j
     return fail(
         ctx, JALI_NO_RESULT,
         "a wall of %g mm, the thinnest allowed, folds or meets itself at %d triangle%s, as at (%.2f, %.2f, "
-        "%.2f) mm; allow a thinner one, or give a larger or smoother surface",
+        "%.2f) mm, and cannot be left full there; allow a thinner one, or give a larger or smoother surface",
         opt->least_mm, found->unsolved_triangles, found->unsolved_triangles == 1 ? "" : "s", at[0], at[1],
         at[2]);
 }
@@ -58,6 +58,17 @@ done:
     return status;
 }
 
+// No picture may lie where the wall is left full.
+static jali_status mark_full(jali_context *ctx, const bool *full, jali_surface *surface)
+{
+    int32_t count = surface->mesh.triangle_count;
+    jali_status status = JALI_OK;
+    if (!surface->faulty) TRY(ALLOCATE_CLEARED(ctx, surface->faulty, count));
+    for (int32_t t = 0; t < count; t++) surface->faulty[t] |= full[t];
+done:
+    return status;
+}
+
 jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const jali_shell_options *given,
                               jali_shell *shell, jali_shell_report *report)
 {
@@ -65,6 +76,7 @@ jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const ja
     jali_shell_options opt = given ? *given : jali_shell_defaults();
     jali_mesh *mesh = &surface->mesh;
     offset_report found;
+    bool *full = NULL;
     *shell = (jali_shell){.unit_mm = finest_unit(mesh, opt.thickness_mm)};
     if (report) *report = (jali_shell_report){.thinnest_mm = opt.thickness_mm};
     if (!(opt.thickness_mm > 0) || !(opt.least_mm > 0) || !isfinite(opt.thickness_mm))
@@ -75,10 +87,19 @@ jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const ja
     for (int32_t v = 0; v < mesh->vertex_count; v++)
         for (int k = 0; k < 3; k++)
             mesh->vertex[v][k] = rint(mesh->vertex[v][k] / shell->unit_mm) * shell->unit_mm;
-    const offset_options wall = {opt.thickness_mm, MIN(opt.least_mm, opt.thickness_mm), shell->unit_mm};
-    TRY(offset_inward(ctx, mesh, &wall, shell->inner, NULL, &found));
+    const offset_options wall = {.thickness_mm = opt.thickness_mm,
+                                 .least_mm = MIN(opt.least_mm, opt.thickness_mm),
+                                 .frail = surface->faulty,
+                                 .unit_mm = shell->unit_mm};
+    TRY(ALLOCATE(ctx, full, mesh->triangle_count));
+    TRY(offset_inward(ctx, mesh, &wall, shell->inner, NULL, full, &found));
     if (found.unsolved_triangles > 0) TRY(refuse_wall(ctx, mesh, &opt, &found));
+    if (found.full_triangles > 0) TRY(mark_full(ctx, full, surface));
     if (report) report->vertices = mesh->vertex_count;
+    if (report && found.full_triangles > 0) {
+        report->full_triangles = found.full_triangles;
+        memcpy(report->full_at_mm, mesh->vertex[mesh->triangle[found.full][0]], sizeof report->full_at_mm);
+    }
     if (report && found.thinnest >= 0) {
         report->thinned = found.thinned;
         report->thinnest_mm = MIN(found.thinnest_mm, opt.thickness_mm);
@@ -87,6 +108,7 @@ jali_status jali_shell_create(jali_context *ctx, jali_surface *surface, const ja
     shell->outer = *surface;
     *surface = (jali_surface){0};
 done:
+    release(ctx, full);
     if (status != JALI_OK) jali_shell_free(ctx, shell);
     return status;
 }

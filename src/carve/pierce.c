@@ -12,8 +12,8 @@
 // Checked: tests/test_shell.c.
 #include <jali/shell.h>
 
-#include "carve/slivers.h"
 #include "mesh/sides.h"
+#include "mesh/slivers.h"
 #include "plane/exact.h"
 #include "plane/snap.h"
 #include "plane/triangulation.h"
@@ -351,7 +351,7 @@ static jali_status build(jali_context *ctx, piercing *p, double backing)
     copy_untouched(p, covered, &out);
     for (int32_t t = 0; t < p->plane.triangle_count; t++)
         if (stays(p, t, backing)) add_cell(p, t, backing, &out);
-    TRY(mend_slivers(ctx, &out, &left));
+    TRY(mend_slivers(ctx, &out, SLIVER_UNITS * out.unit_mm, 0, &left));
     jali_shell_free(ctx, p->shell);
     *p->shell = out;
     out = (jali_shell){0};

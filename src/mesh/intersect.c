@@ -174,7 +174,7 @@ static float float_above(int64_t value)
     return (int64_t)f < value ? nextafterf(f, INFINITY) : f;
 }
 
-static box box_of_triangle(const lattice *l, const int32_t t[3])
+box box_of_triangle(const lattice *l, const int32_t t[3])
 {
     box b;
     for (int k = 0; k < 3; k++) {

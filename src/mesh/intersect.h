@@ -20,6 +20,9 @@ jali_status exact_surface_create(jali_context *ctx, const lattice *l, int32_t tr
                                  const int32_t (*triangle)[3], exact_surface *s);
 void exact_surface_free(jali_context *ctx, exact_surface *s);
 
+/// The box around a triangle, float32 rounded outwards.
+box box_of_triangle(const lattice *l, const int32_t t[3]);
+
 /// Do two triangles, given by welded vertices and each with an area, meet anywhere but in the vertex or edge
 /// they share? Triangles with the same three vertices are left to topology's repeated_triangles and do not
 /// count.

@@ -3,10 +3,10 @@
 // Weld equal places, drop triangles without area and second copies; walk over edges of two triangles and turn
 // over what disagrees with its neighbour; turn whole parts outwards: an open one by its volume as seen from
 // the middle of its rim, a closed one by how many others enclose it. Nothing is invented: holes stay open,
-// crowded edges crowded.
+// crowded edges crowded. A shell that crosses another is neither within it nor its void.
 //
 // Limits:  a triangle on a line with three places of its own leaves a crack when it is dropped. A body within
-//          a body is taken for a void.
+//          a body is taken for a void, a void that crosses a body for a body.
 // Checked: tests/test_mend.c: cubes with each flaw, shells in shells, real files.
 #include "mesh/mend.h"
 
@@ -18,6 +18,7 @@ typedef struct mending {
     jali_context *ctx;
     jali_mesh *mesh;
     double (*uv)[3][2];
+    bool *marked;
     jali_surface_report *report;
     topology_marks marks;
     bool *turned;          // [triangle_count], turned over against the file
@@ -110,6 +111,7 @@ static jali_status drop_triangles(mending *m)
         // The triangle moves first: the table numbers those that are kept.
         memmove(mesh->triangle[kept], mesh->triangle[t], sizeof *mesh->triangle);
         if (m->uv) memmove(m->uv[kept], m->uv[t], sizeof *m->uv);
+        if (m->marked) m->marked[kept] = m->marked[t];
         if (seen_before(mesh, table, slots, kept))
             note_triangle(mesh, kept, &m->report->repeated_triangles);
         else
@@ -227,12 +229,30 @@ static void turn_over(mending *m, int32_t t)
     memcpy(m->uv[t][2], corner, sizeof corner);
 }
 
+// A shell that crosses another one is not within it, wherever its first vertex lies.
+static void find_crossing_shells(const exact_surface *s, const topology *t, const bool *met, bool *crossing)
+{
+    for (int32_t place = 0; place < s->face_count; place++) {
+        int32_t a = s->face[s->tree.item[place]];
+        if (!met[a]) continue;
+        box b = box_of_triangle(s->l, s->triangle[a]);
+        box_walk walk = box_walk_start(&s->tree, &b, place + 1);
+        for (int32_t other; (other = box_walk_next(&walk)) >= 0;) {
+            int32_t c = s->face[s->tree.item[other]];
+            if (!met[c] || t->shell[a] == t->shell[c] || t->shell[a] < 0 || t->shell[c] < 0) continue;
+            if (crossing[t->shell[a]] && crossing[t->shell[c]]) continue;
+            if (triangles_meet(s->l, s->triangle[a], s->triangle[c]))
+                crossing[t->shell[a]] = crossing[t->shell[c]] = true;
+        }
+    }
+}
+
 // All closed shells face outwards; one within an odd number of others is a void and faces inwards.
-static void turn_voids(mending *m, const topology *t, const int32_t *winding)
+static void turn_voids(mending *m, const topology *t, const int32_t *winding, const bool *crossing)
 {
     for (int32_t i = 0; i < m->mesh->triangle_count; i++) {
         int32_t shell = t->shell[i];
-        if (shell < 0 || t->flawed[shell] || winding[shell] % 2 == 0) continue;
+        if (shell < 0 || t->flawed[shell] || crossing[shell] || winding[shell] % 2 == 0) continue;
         turn_over(m, i);
         m->turned[i] ^= true;
     }
@@ -254,7 +274,8 @@ static void mark_faults(const mending *m)
     for (int32_t side = 0; side < 3 * mesh->triangle_count; side++) {
         int32_t twin = m->marks.twin[side];
         bool bad = twin == TWIN_CROWDED || (twin >= 0 && !agrees(mesh, side, twin));
-        faulty[side / 3] |= bad || m->marks.crowded[mesh->triangle[side / 3][side % 3]];
+        faulty[side / 3] |=
+            bad || (m->marked && m->marked[side / 3]) || m->marks.crowded[mesh->triangle[side / 3][side % 3]];
     }
 }
 
@@ -267,14 +288,19 @@ static jali_status find_faults(mending *m, const topology *t)
     lattice l = {0};
     exact_surface s = {0};
     int32_t *winding = NULL;
+    bool *met = NULL, *crossing = NULL;
     finding crossings;
     mark_faults(m); // before whole shells are turned, which renumbers sides
     TRY(lattice_create(m->ctx, mesh->vertex_count, (const double(*)[3])mesh->vertex, &l));
     TRY(exact_surface_create(m->ctx, &l, mesh->triangle_count, triangle, &s));
     TRY(ALLOCATE(m->ctx, winding, t->shell_count));
+    TRY(ALLOCATE_CLEARED(m->ctx, crossing, t->shell_count));
+    TRY(ALLOCATE_CLEARED(m->ctx, met, mesh->triangle_count));
+    TRY(count_intersections(m->ctx, &s, met, &crossings, &report->intersections_capped));
+    for (int32_t i = 0; i < mesh->triangle_count; i++) report->faulty[i] |= met[i];
+    if (crossings.count && t->shell_count > 1) find_crossing_shells(&s, t, met, crossing);
     shell_windings(&s, t, winding);
-    turn_voids(m, t, winding);
-    TRY(count_intersections(m->ctx, &s, report->faulty, &crossings, &report->intersections_capped));
+    turn_voids(m, t, winding, crossing);
     report->shells = t->shell_count;
     report->open_edges = finding_of(mesh, &t->open_edges);
     report->crowded_edges = finding_of(mesh, &t->crowded_edges);
@@ -288,15 +314,18 @@ static jali_status find_faults(mending *m, const topology *t)
     }
 done:
     release(m->ctx, winding);
+    release(m->ctx, met);
+    release(m->ctx, crossing);
     exact_surface_free(m->ctx, &s);
     lattice_free(m->ctx, &l);
     return status;
 }
 
-jali_status mend(jali_context *ctx, jali_mesh *mesh, double (*uv)[3][2], jali_surface_report *report)
+jali_status mend(jali_context *ctx, jali_mesh *mesh, double (*uv)[3][2], bool *marked,
+                 jali_surface_report *report)
 {
     jali_status status;
-    mending m = {.ctx = ctx, .mesh = mesh, .uv = uv, .report = report};
+    mending m = {.ctx = ctx, .mesh = mesh, .uv = uv, .marked = marked, .report = report};
     topology t = {0};
     TRY(weld_mesh(&m));
     TRY(drop_triangles(&m));

@@ -9,8 +9,10 @@
 /// outwards; see jali_surface_read. Find what is left.
 ///   in/out  mesh    rounded by mesh_round; gets smaller
 ///           uv      [mesh->triangle_count] or NULL; follows the triangles
+///           marked  [mesh->triangle_count] or NULL; follows them too: faulty whatever is found
 ///   out     report  all but the count of vertices and triangles; on failure the caller frees it
 ///   fails   JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT
-jali_status mend(jali_context *ctx, jali_mesh *mesh, double (*uv)[3][2], jali_surface_report *report);
+jali_status mend(jali_context *ctx, jali_mesh *mesh, double (*uv)[3][2], bool *marked,
+                 jali_surface_report *report);
 
 #endif

@@ -16,12 +16,13 @@
 // Checked: tests/test_offset.c.
 #include "mesh/offset.h"
 #include "mesh/intersect.h"
+#include "mesh/offset_fill.h"
 #include "mesh/offset_ways.h"
 #include "base/vector.h"
 
 #include <math.h>
 
-enum { FOLD_ROUNDS = 40, MEET_ROUNDS = 30, GRADE_SWEEPS = 200 };
+enum { FOLD_ROUNDS = 40, MEET_ROUNDS = 30, FULL_ROUNDS = 5, FULL_SWEEPS = 8, GRADE_SWEEPS = 200 };
 
 static const double steepest = 0.5;    // change of the thickness along the surface
 static const double less = 0.8;        // what a failed test leaves of it
@@ -37,7 +38,11 @@ typedef struct offsetting {
     float *kept;      // [vertex_count] share of the thickness that the way keeps
     double *wall;     // [vertex_count] thickness
     bool *failed;     // [vertex_count]
+    bool *frail;      // [vertex_count] corner of a frail triangle; NULL: there are none
     bool *met;        // [all triangles] of both skins and the rims' walls
+    bool *full;       // [triangle_count] left full; NULL: none is
+    int32_t sweeps;   // of the membrane
+    bool *free;       // [vertex_count] within those: the membrane says where they are
     bool *own;        // [triangle_count] triangles of the surface that meet each other; NULL: none do
     double (*inner)[3];
     // Both skins and the walls along rims: inner vertices and triangles come behind the outer ones.
@@ -203,9 +208,10 @@ static bool thin(offsetting *o, double least_mm)
     bool thinner = false;
     for (int32_t v = 0; v < o->mesh->vertex_count; v++) {
         if (!o->failed[v]) continue;
+        double least = o->frail && o->frail[v] ? MIN(least_mm, dimple * o->opt->least_mm) : least_mm;
         o->failed[v] = false;
-        if (o->wall[v] <= least_mm) continue;
-        o->wall[v] = MAX(less * o->wall[v], least_mm);
+        if (o->wall[v] <= least || (o->free && o->free[v])) continue;
+        o->wall[v] = MAX(less * o->wall[v], least);
         thinner = true;
     }
     if (thinner) grade(o);
@@ -244,12 +250,17 @@ static bool is_own(const offsetting *o, int32_t t)
     return o->own && o->own[t];
 }
 
+static bool is_full(const offsetting *o, int32_t t)
+{
+    return o->full && o->full[t];
+}
+
 // Mark the corners of prisms that turn over; how many do.
 static int32_t find_folds(offsetting *o, int32_t *one)
 {
     int32_t count = 0;
     for (int32_t t = 0; t < o->mesh->triangle_count; t++) {
-        if (is_own(o, t) || prism_stands(o, t)) continue;
+        if (is_own(o, t) || is_full(o, t) || prism_stands(o, t)) continue;
         if (count++ == 0) *one = t;
         for (int c = 0; c < 3; c++) o->failed[o->mesh->triangle[t][c]] = true;
     }
@@ -349,6 +360,9 @@ static jali_status part_skins(offsetting *o, offset_report *report)
         int32_t folds = 0, one = -1;
         TRY(unfold(o, &folds, &one));
         TRY(step(o->ctx, "offset", 0.4 + 0.6 * round / MEET_ROUNDS));
+        if (o->full)
+            TRY(span_full(o->ctx, o->mesh, o->marks.twin, o->full, o->opt->unit_mm, o->sweeps, o->free,
+                          o->inner));
         TRY(find_meetings(o, 2 * o->mesh->vertex_count, o->all_triangles, o->met));
         if (round == 0) TRY(find_own(o));
         int32_t meetings = mark_meetings(o, &one);
@@ -361,11 +375,54 @@ done:
     return status;
 }
 
+// The triangles that are still in the way, and those around them.
+static jali_status add_full(offsetting *o, int32_t rings)
+{
+    int32_t count = o->mesh->triangle_count;
+    for (int32_t t = 0; t < count; t++) {
+        bool bad = !is_full(o, t) && !prism_stands(o, t);
+        o->full[t] |= !is_own(o, t) && (bad || o->met[count + t]);
+    }
+    return grow_full(o->ctx, o->mesh, rings, o->full);
+}
+
+// Where the least wall folds or meets a skin too, the wall is left full, farther around with each round; the
+// rest begins again with the first guess.
+static jali_status leave_full(offsetting *o, offset_report *report)
+{
+    jali_status status = JALI_OK;
+    if (report->unsolved_triangles == 0) goto done;
+    TRY(ALLOCATE_CLEARED(o->ctx, o->full, o->mesh->triangle_count));
+    TRY(ALLOCATE_CLEARED(o->ctx, o->free, o->mesh->vertex_count));
+    for (int32_t round = 0; round < FULL_ROUNDS && report->unsolved_triangles > 0; round++) {
+        TRY(add_full(o, round + 1));
+        o->sweeps = FULL_SWEEPS << 2 * round;
+        TRY(first_guess(o));
+        grade(o);
+        place_inner(o);
+        TRY(part_skins(o, report));
+    }
+    for (int32_t t = 0; t < o->mesh->triangle_count; t++)
+        if (o->full[t] && report->full_triangles++ == 0) report->full = t;
+done:
+    return status;
+}
+
+static jali_status find_frail(offsetting *o)
+{
+    if (!o->opt->frail) return JALI_OK;
+    jali_status status = ALLOCATE_CLEARED(o->ctx, o->frail, o->mesh->vertex_count);
+    for (int32_t i = 0; status == JALI_OK && i < 3 * o->mesh->triangle_count; i++)
+        o->frail[o->mesh->triangle[i / 3][i % 3]] |= o->opt->frail[i / 3];
+    return status;
+}
+
 static void measure(const offsetting *o, float *thickness, offset_report *report)
 {
     report->thinnest = -1;
     for (int32_t v = 0; v < o->mesh->vertex_count; v++) {
         double wall = o->wall[v] * o->kept[v];
+        if (o->free && o->free[v]) continue; // thicker than anything
         if (thickness) thickness[v] = (float)wall;
         report->thinned += o->wall[v] < o->opt->thickness_mm;
         if (report->thinnest >= 0 && wall >= report->thinnest_mm) continue;
@@ -375,12 +432,12 @@ static void measure(const offsetting *o, float *thickness, offset_report *report
 }
 
 jali_status offset_inward(jali_context *ctx, const jali_mesh *mesh, const offset_options *opt,
-                          double (*inner)[3], float *thickness, offset_report *report)
+                          double (*inner)[3], float *thickness, bool *full, offset_report *report)
 {
     jali_status status;
     offsetting o = {.ctx = ctx, .mesh = mesh, .opt = opt};
     topology t = {0};
-    *report = (offset_report){.thinnest = -1, .unsolved = -1};
+    *report = (offset_report){.thinnest = -1, .unsolved = -1, .full = -1};
     TRY(ALLOCATE(ctx, o.marks.twin, 3 * (size_t)mesh->triangle_count));
     TRY(ALLOCATE(ctx, o.marks.crowded, mesh->vertex_count));
     TRY(ALLOCATE(ctx, o.way, mesh->vertex_count));
@@ -389,12 +446,16 @@ jali_status offset_inward(jali_context *ctx, const jali_mesh *mesh, const offset
     TRY(ALLOCATE_CLEARED(ctx, o.failed, mesh->vertex_count));
     TRY(topology_mark(ctx, mesh->vertex_count, mesh->triangle_count, (const int32_t(*)[3])mesh->triangle,
                       &o.marks, &t));
+    TRY(find_frail(&o));
     TRY(create_skins(&o));
     TRY(offset_ways(ctx, mesh, o.marks.twin, o.way, o.kept));
     TRY(first_guess(&o));
     grade(&o);
     place_inner(&o);
     TRY(part_skins(&o, report));
+    TRY(leave_full(&o, report));
+    if (full) memset(full, 0, (size_t)mesh->triangle_count * sizeof *full);
+    if (full && o.full) memcpy(full, o.full, (size_t)mesh->triangle_count * sizeof *full);
     memcpy(inner, o.inner, (size_t)mesh->vertex_count * sizeof *inner);
     measure(&o, thickness, report);
 done:
@@ -405,6 +466,9 @@ done:
     release(ctx, o.kept);
     release(ctx, o.wall);
     release(ctx, o.failed);
+    release(ctx, o.frail);
+    release(ctx, o.full);
+    release(ctx, o.free);
     release(ctx, o.met);
     release(ctx, o.own);
     release(ctx, o.vertex);

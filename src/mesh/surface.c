@@ -5,6 +5,7 @@
 #include "base/bytes.h"
 #include "base/file.h"
 #include "mesh/mend.h"
+#include "mesh/merge.h"
 #include "mesh/readers.h"
 #include "mesh/spec.h"
 #include "mesh/turn.h"
@@ -144,6 +145,73 @@ static bool scale_texture(jali_surface *surface)
     return true;
 }
 
+// ---- parts that cross ----
+
+static bool no_worse(const jali_surface_report *now, const jali_surface_report *before)
+{
+    return now->intersections.count < before->intersections.count &&
+           now->open_edges.count <= before->open_edges.count &&
+           now->crowded_edges.count <= before->crowded_edges.count &&
+           now->crowded_vertices.count <= before->crowded_vertices.count &&
+           now->misdirected_edges.count <= before->misdirected_edges.count;
+}
+
+// What was found first and put right stays in the report; what is left is that of the merged surface.
+static void take_merged(jali_context *ctx, jali_surface *surface, merging *merged,
+                        jali_surface_report *report, jali_surface_report *found)
+{
+    found->shells = report->shells;
+    found->open_edges = report->open_edges;
+    found->crowded_edges = report->crowded_edges;
+    found->crowded_vertices = report->crowded_vertices;
+    found->misdirected_edges = report->misdirected_edges;
+    found->intersections = report->intersections;
+    found->intersections_capped = report->intersections_capped;
+    found->faulty_triangles = report->faulty_triangles;
+    release(ctx, found->faulty);
+    found->faulty = report->faulty;
+    report->faulty = NULL;
+    jali_mesh_free(ctx, &surface->mesh);
+    surface->mesh = merged->mesh;
+    merged->mesh = (jali_mesh){0};
+    release(ctx, surface->uv);
+    surface->uv = merged->uv;
+    merged->uv = NULL;
+}
+
+// Parts that cross become one. Each round begins with what the last one left: rounding can make new
+// crossings, much smaller ones. Where it does not get better, the surface stays as it was.
+static jali_status merge_parts(jali_context *ctx, jali_surface *surface, jali_surface_report *found)
+{
+    enum { ROUNDS = 6 };
+    jali_status status = JALI_OK;
+    merging merged = {0};
+    jali_surface_report report = {0}, before = *found;
+    bool *marked = NULL, first = true;
+    if (found->intersections.count == 0 || found->intersections_capped) return JALI_OK;
+    TRY(ALLOCATE_CLEARED(ctx, marked, surface->mesh.triangle_count));
+    for (int32_t round = 0; round < ROUNDS && found->intersections.count > 0; round++) {
+        TRY(merge_crossings(ctx, &surface->mesh, (const double(*)[3][2])surface->uv, marked, round, &merged));
+        if (!merged.done) continue;
+        TRY(mend(ctx, &merged.mesh, merged.uv, merged.faulty, &report));
+        if (no_worse(&report, found)) {
+            if (first) found->merged = before.intersections;
+            first = false;
+            take_merged(ctx, surface, &merged, &report, found);
+            release(ctx, marked);
+            marked = merged.faulty;
+            merged.faulty = NULL;
+        }
+        jali_surface_report_free(ctx, &report);
+        merging_free(ctx, &merged);
+    }
+done:
+    release(ctx, marked);
+    jali_surface_report_free(ctx, &report);
+    merging_free(ctx, &merged);
+    return status;
+}
+
 // ---- files ----
 
 jali_status jali_surface_read(jali_context *ctx, const char *path, const jali_surface_options *given,
@@ -164,7 +232,8 @@ jali_status jali_surface_read(jali_context *ctx, const char *path, const jali_su
     found.file_vertices = surface->mesh.vertex_count;
     found.file_triangles = surface->mesh.triangle_count;
     TRY(put_upright(ctx, file.name, &opt, &surface->mesh));
-    TRY(mend(ctx, &surface->mesh, surface->uv, &found));
+    TRY(mend(ctx, &surface->mesh, surface->uv, NULL, &found));
+    TRY(merge_parts(ctx, surface, &found));
     found.vertices = surface->mesh.vertex_count;
     found.triangles = surface->mesh.triangle_count;
     if (found.triangles == 0) TRY(fail(ctx, JALI_BAD_INPUT, "%s: no triangle has an area", file.name));
@@ -276,12 +345,15 @@ jali_status jali_surface_sentences(jali_context *ctx, const jali_surface_report 
         {&r->misdirected_edges, "edge has sides that cannot be told apart",
          "edges have sides that cannot be told apart"},
     };
+    const phrase merged = {&r->merged, "pair of triangles intersected: the parts there were made one",
+                           "pairs of triangles intersected: the parts there were made one"};
     const phrase crossing = {&r->intersections, "pair of triangles intersects",
                              "pairs of triangles intersect"};
     if (r->welded_vertices > 0)
         TRY(bytes_print(ctx, text, "%d vertices at the place of another were welded to it.\n",
                         r->welded_vertices));
     for (size_t i = 0; i < sizeof phrases / sizeof *phrases; i++) TRY(say(ctx, &phrases[i], "", text));
+    TRY(say(ctx, &merged, "", text));
     TRY(say(ctx, &crossing, r->intersections_capped ? "At least " : "", text));
 done:
     return status;

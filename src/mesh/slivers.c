@@ -7,7 +7,7 @@
 // quadrilateral around it stays upright on both skins and the
 //          lower of the two heights grows. Heights grow with each flip, so it ends; a cap makes sure.
 // Checked: tests/test_shell.c.
-#include "carve/slivers.h"
+#include "mesh/slivers.h"
 
 #include "mesh/sides.h"
 #include "plane/triangulation.h"
@@ -15,12 +15,12 @@
 
 #include <math.h>
 
-static const double LEAST_UNITS = 4; // of height: rounding moves each vertex by up to 0.9
 enum { FLIPS_A_SLIVER = 8, MOST_RING = 64 };
 
 typedef struct mending {
     jali_shell *shell;
     sides linked;
+    int skins;
     double least;
     uint8_t *gone; // [triangles]
 } mending;
@@ -48,7 +48,7 @@ static double length2(const mending *m, int skin, int32_t a, int32_t b)
 static double height(const mending *m, int32_t a, int32_t b, int32_t c, const double up[2][3])
 {
     double least = INFINITY;
-    for (int skin = 0; skin < 2; skin++) {
+    for (int skin = 0; skin < m->skins; skin++) {
         double n[3], longest;
         normal(m, skin, a, b, c, n);
         longest = MAX(length2(m, skin, a, b), MAX(length2(m, skin, b, c), length2(m, skin, c, a)));
@@ -161,7 +161,7 @@ static bool stay_upright(const mending *m, const ring *r, int32_t to, int32_t t,
         int32_t here = r->corner[i], a = corner(m, next_side(here)), b = corner(m, last_side(here));
         if (here >> 2 == t || here >> 2 == u || height_of(m, here >> 2) < m->least) continue;
         double up[2][3];
-        for (int skin = 0; skin < 2; skin++) normal(m, skin, corner(m, here), a, b, up[skin]);
+        for (int skin = 0; skin < m->skins; skin++) normal(m, skin, corner(m, here), a, b, up[skin]);
         if (height(m, to, a, b, (const double(*)[3])up) <= 0) return false;
     }
     return true;
@@ -202,7 +202,7 @@ static bool collapse_short(mending *m, int32_t t)
 {
     for (int32_t s = 4 * t; s < 4 * t + 3; s++) {
         int32_t a = corner(m, next_side(s)), b = corner(m, last_side(s));
-        double shortest2 = MIN(length2(m, 0, a, b), length2(m, 1, a, b));
+        double shortest2 = MIN(length2(m, 0, a, b), length2(m, m->skins - 1, a, b));
         if (shortest2 >= 4 * m->least * m->least) continue;
         if (collapse(m, s)) return true;
         if (m->linked.beside[s] != NO_SIDE && collapse(m, m->linked.beside[s])) return true; // the other end
@@ -227,8 +227,10 @@ static bool mend(mending *m, int32_t t, int32_t *other)
         }
     }
     int32_t p = corner(m, s), q = corner(m, o), a = corner(m, next_side(s)), b = corner(m, last_side(s));
+    ring around = ring_of(m, s);
+    if (!around.whole || is_around(m, &around, q)) return false; // an edge between them is there
     double up[2][3];
-    for (int skin = 0; skin < 2; skin++) normal(m, skin, q, b, a, up[skin]);
+    for (int skin = 0; skin < m->skins; skin++) normal(m, skin, q, b, a, up[skin]);
     double before = MIN(height(m, p, a, b, NULL), height(m, q, b, a, NULL));
     double after =
         MIN(height(m, p, a, q, (const double(*)[3])up), height(m, q, b, p, (const double(*)[3])up));
@@ -254,29 +256,36 @@ static void gather(const mending *m)
     shell->outer.mesh.triangle_count = kept;
 }
 
-jali_status mend_slivers(jali_context *ctx, jali_shell *shell, int32_t *left)
+static bool is_thin(const mending *m, int32_t t, int32_t from)
+{
+    bool chosen = from == 0;
+    for (int k = 0; k < 3; k++) chosen |= corner(m, 4 * t + k) >= from;
+    return chosen && height_of(m, t) < m->least;
+}
+
+jali_status mend_slivers(jali_context *ctx, jali_shell *shell, double least_mm, int32_t from, int32_t *left)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
     int32_t triangles = shell->outer.mesh.triangle_count, thin = 0, waiting = 0, *stack;
-    mending m = {.shell = shell, .least = LEAST_UNITS * shell->unit_mm};
+    mending m = {.shell = shell, .skins = shell->inner ? 2 : 1, .least = least_mm};
     *left = 0;
     TRY(sides_create(ctx, shell->outer.mesh.vertex_count, triangles,
                      (const int32_t(*)[3])shell->outer.mesh.triangle, &m.linked));
     TRY(ARENA(ctx, m.gone, triangles + 1));
     memset(m.gone, 0, (size_t)triangles);
-    for (int32_t t = 0; t < triangles; t++) thin += height_of(&m, t) < m.least;
+    for (int32_t t = 0; t < triangles; t++) thin += is_thin(&m, t, from);
     size_t room = (size_t)thin * (FLIPS_A_SLIVER + 1) * 2 + 1;
     TRY(ARENA(ctx, stack, room));
     for (int32_t t = triangles - 1; t >= 0; t--)
-        if (height_of(&m, t) < m.least) stack[waiting++] = t;
+        if (is_thin(&m, t, from)) stack[waiting++] = t;
     for (int64_t budget = (int64_t)thin * FLIPS_A_SLIVER; waiting > 0 && budget > 0; budget--) {
         int32_t t = stack[--waiting], other;
         if (m.gone[t] || height_of(&m, t) >= m.least || !mend(&m, t, &other)) continue;
         if (!m.gone[t]) stack[waiting++] = t;
         if (other >= 0) stack[waiting++] = other;
     }
-    for (int32_t t = 0; t < triangles; t++) *left += !m.gone[t] && height_of(&m, t) < m.least;
+    for (int32_t t = 0; t < triangles; t++) *left += !m.gone[t] && is_thin(&m, t, from);
     gather(&m);
 done:
     sides_free(ctx, &m.linked);
