@@ -4,6 +4,8 @@
 #include <jali/surface.h>
 
 #include <jali/place.h>
+#include "place/patch.h"
+#include "plane/exact.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -296,6 +298,116 @@ TEST(faulty_faces_matter_under_the_picture_alone)
     jali_surface_free(ctx, &s);
 }
 
+// A disc of rings of triangles, radius 1, counter-clockwise seen from -y.
+static jali_mesh disc(int32_t rings, int32_t around)
+{
+    jali_mesh mesh;
+    CHECK_OK(mesh_create(ctx, 1 + rings * around, around * (2 * rings - 1), &mesh));
+    memset(mesh.vertex[0], 0, sizeof *mesh.vertex);
+    int32_t next = 0;
+    for (int32_t r = 0; r < rings; r++)
+        for (int32_t i = 0; i < around; i++) {
+            double radius = (r + 1.0) / rings, angle = 2 * M_PI * i / around;
+            int32_t a = 1 + r * around + i, b = 1 + r * around + (i + 1) % around;
+            double at[3] = {radius * cos(angle), 0, radius * sin(angle)};
+            memcpy(mesh.vertex[a], at, sizeof at);
+            if (r == 0) {
+                memcpy(mesh.triangle[next++], (int32_t[3]){0, a, b}, sizeof *mesh.triangle);
+                continue;
+            }
+            memcpy(mesh.triangle[next++], (int32_t[3]){a - around, a, b}, sizeof *mesh.triangle);
+            memcpy(mesh.triangle[next++], (int32_t[3]){a - around, b, b - around}, sizeof *mesh.triangle);
+        }
+    return mesh;
+}
+
+// The insides of two triangles have a place in common, unless a line through an edge of one parts them.
+static bool triangles_overlap(int32_t (*const a[3])[2], int32_t (*const b[3])[2])
+{
+    for (int way = 0; way < 2; way++) {
+        int32_t(*const *one)[2] = way ? b : a, (*const *other)[2] = way ? a : b;
+        for (int k = 0; k < 3; k++) {
+            bool apart = true;
+            for (int i = 0; i < 3; i++) apart &= orientation(*one[k], *one[(k + 1) % 3], *other[i]) <= 0;
+            if (apart) return false;
+        }
+    }
+    return true;
+}
+
+// Strips of a ring that turn by up to one and a half times, moved at random: decided as by all pairs of
+// faces.
+TEST(patches_that_cover_a_place_twice_are_found)
+{
+    enum { LONG = 24, WIDE = 3, POINTS = (LONG + 1) * (WIDE + 1), FACES = 2 * LONG * WIDE };
+    int32_t found[2] = {0};
+    for (uint64_t seed = 1; seed <= 200; seed++) {
+        uint64_t random = seed;
+        int32_t point[POINTS][2], vertex[POINTS], face[FACES], corner[FACES][3], where;
+        double angle = 3 + (double)(next_random(&random) >> 40) / (1 << 24) * 6.5;
+        double drift = (double)(next_random(&random) >> 40) / (1 << 24) * 400 - 200;
+        for (int32_t i = 0; i <= LONG; i++)
+            for (int32_t j = 0; j <= WIDE; j++) {
+                double a = angle * i / LONG, r = 900 - 150 * j + drift * i / LONG;
+                point[i * (WIDE + 1) + j][0] =
+                    (int32_t)lrint(r * cos(a)) + (int32_t)(next_random(&random) >> 61);
+                point[i * (WIDE + 1) + j][1] =
+                    (int32_t)lrint(r * sin(a)) + (int32_t)(next_random(&random) >> 61);
+            }
+        for (int32_t f = 0; f < FACES; f++) {
+            int32_t a = f / 2 / WIDE * (WIDE + 1) + f / 2 % WIDE, b = a + WIDE + 1;
+            int32_t both[2][3] = {{a, b, b + 1}, {a, b + 1, a + 1}};
+            memcpy(corner[f], both[f % 2], sizeof *corner);
+            CHECK(orientation(point[corner[f][0]], point[corner[f][1]], point[corner[f][2]]) > 0);
+        }
+        jali_patch patch = {POINTS, point, vertex, NULL, FACES, face, corner};
+        bool twice = false;
+        for (int32_t f = 0; f < FACES; f++)
+            for (int32_t g = 0; g < f && !twice; g++) {
+                int32_t(*a[3])[2], (*b[3])[2];
+                for (int k = 0; k < 3; k++) a[k] = &point[corner[f][k]], b[k] = &point[corner[g][k]];
+                twice = triangles_overlap(a, b);
+            }
+        CHECK_OK(find_overlap(ctx, &patch, &where));
+        CHECK_INT(where >= 0, twice);
+        found[twice]++;
+    }
+    CHECK(found[0] > 40 && found[1] > 40);
+}
+
+// A texture that goes around its middle twice, face by face the right way round, with one border for two.
+TEST(a_texture_that_overlaps_is_refused_before_anything_else)
+{
+    lying l;
+    for (int turns = 1; turns < 3; turns++) {
+        jali_surface s = {.mesh = disc(8, 48), .textured = true};
+        jali_place_options opt = jali_place_defaults();
+        opt.placing = JALI_PLACE_WRAP;
+        opt.width_mm = 20;
+        opt.frame_mm = 1;
+        opt.at_given = true;
+        CHECK_OK(ALLOCATE(ctx, s.uv, s.mesh.triangle_count));
+        for (int32_t v = 0; v < s.mesh.vertex_count; v++)
+            for (int k = 0; k < 3; k++) s.mesh.vertex[v][k] *= 40;
+        for (int32_t t = 0; t < s.mesh.triangle_count; t++)
+            for (int k = 0; k < 3; k++) {
+                const double *p = s.mesh.vertex[s.mesh.triangle[t][k]];
+                double r = hypot(p[0], p[2]), a = turns * atan2(p[2], p[0]);
+                s.uv[t][k][0] = r * cos(a);
+                s.uv[t][k][1] = r * sin(a);
+            }
+        if (turns == 1) {
+            CHECK_OK(put(&s, &opt, 64, 64, &l));
+            take_away(&l);
+        } else {
+            CHECK_STATUS(put(&s, &opt, 64, 64, &l), JALI_NO_RESULT);
+            CHECK(strstr(jali_message(ctx), "covers the picture's window twice: its texture") != NULL);
+            CHECK(strstr(jali_message(ctx), "texture=no") != NULL);
+        }
+        jali_surface_free(ctx, &s);
+    }
+}
+
 static jali_status place_some(jali_context *limited, void *data)
 {
     lying l;
@@ -332,6 +444,10 @@ int main(void)
                                         close_context),
         cmocka_unit_test_setup_teardown(a_picture_around_leaves_a_bar, open_context, close_context),
         cmocka_unit_test_setup_teardown(a_view_is_found_and_hidden_parts_are_refused, open_context,
+                                        close_context),
+        cmocka_unit_test_setup_teardown(patches_that_cover_a_place_twice_are_found, open_context,
+                                        close_context),
+        cmocka_unit_test_setup_teardown(a_texture_that_overlaps_is_refused_before_anything_else, open_context,
                                         close_context),
         cmocka_unit_test_setup_teardown(faulty_faces_matter_under_the_picture_alone, open_context,
                                         close_context),

@@ -170,14 +170,17 @@ static jali_status link_sides(labelling *l)
         l->side[s] = (edge_side){MIN(a, b), MAX(a, b), s};
     }
     qsort(l->side, (size_t)count, sizeof *l->side, compare_sides);
-    qsort(l->cut->piece, (size_t)l->cut->piece_count, sizeof *l->cut->piece, compare_pieces);
+    if (l->cut->piece_count)
+        qsort(l->cut->piece, (size_t)l->cut->piece_count, sizeof *l->cut->piece, compare_pieces);
     for (int32_t first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && l->side[end].low == l->side[first].low &&
                               l->side[end].high == l->side[first].high;)
             end++;
         cut_piece key = {l->side[first].low, l->side[first].high, 0};
         const cut_piece *piece =
-            bsearch(&key, l->cut->piece, (size_t)l->cut->piece_count, sizeof key, compare_pieces);
+            l->cut->piece_count == 0
+                ? NULL
+                : bsearch(&key, l->cut->piece, (size_t)l->cut->piece_count, sizeof key, compare_pieces);
         l->is_cut[first] = piece != NULL;
         l->through[first] = piece || end - first == 2;
         l->group_end[first] = end;

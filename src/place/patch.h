@@ -24,6 +24,12 @@ jali_status grow_patch(jali_context *ctx, const laid *l, const jali_chart *chart
 /// The area of the rectangle that the patch covers, lattice units squared. Exact but for double rounding.
 double covered_area(const jali_patch *patch, const double low[2], const double high[2]);
 
+/// Does the patch cover a place of the plane twice? Decided by its borders, exactly.
+///   out    point   of the patch, where a border crosses another one or itself; -1: it does not
+///   fails  JALI_LIMIT, JALI_NO_MEMORY, JALI_CANCELLED
+///   cost   O(faces)
+jali_status find_overlap(jali_context *ctx, const jali_patch *patch, int32_t *point);
+
 /// Fill the chart's metric from the faces of the patch.
 ///   out    stretch   least and largest stretch of a length inside the picture
 jali_status fill_metric(jali_context *ctx, const laid *l, const growth *g, jali_chart *chart,

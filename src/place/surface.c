@@ -332,6 +332,21 @@ static jali_status check_sound(jali_context *ctx, const placing_work *w)
         count, count == 1 ? "" : "s", count == 1 ? "is" : "are", at[0], at[1], at[2]);
 }
 
+// A void must be cut through one place of the surface only.
+static jali_status check_once(jali_context *ctx, const placing_work *w)
+{
+    int32_t point;
+    jali_status status = find_overlap(ctx, &w->grown.patch, &point);
+    if (status != JALI_OK || point < 0) return status;
+    const double *at = w->surface->mesh.vertex[w->grown.patch.vertex[point]];
+    return fail(
+        ctx, JALI_NO_RESULT,
+        "the surface covers the picture's window twice: %s overlaps itself, as at (%.4g, %.4g, %.4g) mm; "
+        "%sanother place (--at) or a smaller picture is needed",
+        w->surface->textured && !w->plane.depth ? "its texture" : "what lies under the picture", at[0], at[1],
+        at[2], w->surface->textured && !w->plane.depth ? ":texture=no behind the file's name, " : "");
+}
+
 // Anything of the object before the patch? A picture seen in part does not look right.
 static jali_status check_hidden(jali_context *ctx, const placing_work *w)
 {
@@ -400,6 +415,7 @@ static jali_status lay_picture(jali_context *ctx, placing_work *w)
                                             : automatic_pixel(&w->opt, 1);
     TRY(chart_patch(ctx, w, pixel_mm));
     TRY(check_hidden(ctx, w));
+    TRY(check_once(ctx, w));
     // Widths count on the surface: where it is stretched they are fewer pixels.
     double finer_mm = automatic_pixel(&w->opt, MIN(w->placed.stretch[1], MOST_STRETCH));
     if (finer_mm < pixel_mm && !w->opt.paper && w->opt.pixel_mm == 0) TRY(chart_patch(ctx, w, finer_mm));
