@@ -8,7 +8,7 @@
 #include <math.h>
 
 enum { SIDE_PX = 120 };
-static const double SIDE_MM = 30, FRAME_MM = 2;
+static const double SIDE_MM = 30, FRAME_MM = 2; // of most plates
 
 static double uniform(uint64_t *seed, double from, double to)
 {
@@ -25,17 +25,17 @@ typedef struct subject {
     jali_comparison truth;
 } subject;
 
-static subject subject_of(uint64_t seed)
+static subject subject_of(uint64_t seed, double side_mm)
 {
     enum { ROOM = 80 };
     subject s = {.picture = random_blobs(&seed, SIDE_PX, SIDE_PX - 20, 12, 50)};
     element disc;
     jali_bitmap grown;
     jali_predict_options predict = jali_predict_defaults();
-    predict.picture_mm = SIDE_MM;
+    predict.picture_mm = side_mm;
     CHECK_OK(jali_reference_create(ctx, &s.picture, &predict, &s.reference));
-    s.opt = (jali_compare_options){{SIDE_MM, SIDE_MM * (SIDE_PX - 20) / SIDE_PX}, FRAME_MM, 0.3};
-    double pixel_mm = SIDE_MM / s.reference.picture.width_px;
+    s.opt = (jali_compare_options){{side_mm, side_mm * (SIDE_PX - 20) / SIDE_PX}, FRAME_MM, 0.3};
+    double pixel_mm = side_mm / s.reference.picture.width_px;
     int32_t frame = (int32_t)lround(FRAME_MM / pixel_mm), w = s.reference.picture.width_px,
             h = s.reference.picture.height_px;
     s.print = (jali_print){.pixel_mm = {pixel_mm, pixel_mm}};
@@ -126,7 +126,7 @@ TEST(a_scan_gives_the_error_that_the_print_has)
         {16, -0.7, 0.05, true, true, 0.4, 0.05, 1},  // from behind, askew
     };
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
-        subject s = subject_of(31 + i);
+        subject s = subject_of(31 + i, SIDE_MM);
         jali_picture scan = photographed(&s, &cameras[i], 1000 + i);
         jali_comparison c;
         CHECK_OK(jali_compare_scan(ctx, &s.reference, &scan, &s.opt, &c));
@@ -148,7 +148,7 @@ TEST(a_scan_gives_the_error_that_the_print_has)
 
 TEST(scans_that_will_not_do_are_refused_with_a_reason)
 {
-    subject s = subject_of(5), other = subject_of(99);
+    subject s = subject_of(5, SIDE_MM);
     camera how = {16, 0.1, 0, false, false, 0.2, 0.02, 0.5};
     jali_comparison c;
     jali_picture scan = photographed(&s, &how, 7), cut = {scan.width_px, scan.height_px * 6 / 10, scan.grey};
@@ -167,7 +167,31 @@ TEST(scans_that_will_not_do_are_refused_with_a_reason)
     jali_picture_free(ctx, &scan);
     CHECK_STATUS(jali_compare_scan(ctx, &s.reference, &scan, &s.opt, &c), JALI_BAD_VALUE); // an empty one
     subject_free(&s);
-    subject_free(&other);
+}
+
+typedef struct refused_scan {
+    const subject *subject;
+    const jali_picture *scan;
+} refused_scan;
+
+static jali_status compare_once(jali_context *limited, void *data)
+{
+    const refused_scan *r = data;
+    jali_comparison c;
+    jali_status status = jali_compare_scan(limited, &r->subject->reference, r->scan, &r->subject->opt, &c);
+    jali_comparison_free(limited, &c);
+    return status;
+}
+
+TEST(allocations_may_be_refused)
+{
+    subject s = subject_of(31, 8);
+    camera how = {10, 0, 0, false, false, 0, 0, 0};
+    jali_picture scan = photographed(&s, &how, 1000);
+    refuse_allocations(compare_once, &(refused_scan){&s, &scan},
+                       7); // of 531; test_scan.c refuses each of the parts'
+    jali_picture_free(ctx, &scan);
+    subject_free(&s);
 }
 
 int main(void)
@@ -175,6 +199,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scan_gives_the_error_that_the_print_has),
         cmocka_unit_test(scans_that_will_not_do_are_refused_with_a_reason),
+        cmocka_unit_test(allocations_may_be_refused),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);
 }

@@ -138,11 +138,13 @@ static inline void refusing_release(void *user, void *block)
     free(block);
 }
 
-/// Run `body` once for each allocation it makes, that one refused: the status must be JALI_NO_MEMORY and
-/// nothing may leak. Ends when a run needs no more allocations. The single thread keeps the count exact.
-static inline void refuse_each_allocation(jali_status (*body)(jali_context *limited, void *data), void *data)
+/// Run `body` once for each `stride`-th allocation it makes, that one refused: the status must be
+/// JALI_NO_MEMORY and nothing may leak. Ends when a run needs no more allocations. The single thread keeps
+/// the count exact.
+static inline void refuse_allocations(jali_status (*body)(jali_context *limited, void *data), void *data,
+                                      int64_t stride)
 {
-    for (int64_t refuse_at = 1;; refuse_at++) {
+    for (int64_t refuse_at = 1;; refuse_at += stride) {
         refusing r = {.refuse_at = refuse_at};
         jali_context_options opt = jali_context_defaults();
         opt.threads = 1;
@@ -162,6 +164,11 @@ static inline void refuse_each_allocation(jali_status (*body)(jali_context *limi
         }
         CHECK_INT(status, JALI_NO_MEMORY);
     }
+}
+
+static inline void refuse_each_allocation(jali_status (*body)(jali_context *limited, void *data), void *data)
+{
+    refuse_allocations(body, data, 1);
 }
 
 #endif
