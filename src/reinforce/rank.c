@@ -4,134 +4,13 @@
 // B^T)^-1 B u, so a stress with the gradient c by -(B a)^T (S^-1 + F)^-1 (B u), where a = K^-1 c comes from
 // one solution a hot spot and F = B K^-1 B^T from the inverse's entries at the connector's ends: exact, and
 // nothing is solved for a connector. What one connector does to the others' B u, B a and F is the same
-// formula once more. A first sieve goes over all spans with a guess at F: how far the ends move under all of
-// the load. Checked: tests/test_reinforce.c: against a new factor.
+// formula once more. Candidates come through the sieve. Checked: tests/test_reinforce.c: against a new
+// factor.
 #include "reinforce/rank.h"
-#include "reinforce/plank.h"
-#include "base/vector.h"
+#include "reinforce/sieve.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-enum { SIEVED = 104, WIDTHS = 4, MOST_PLACES = 16 };
-
-static const double times_wider[WIDTHS] = {1, 2, 4, 8};
-
-// --- The sieve
-
-static double length_of(const double v[6])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-// Visible pixels of a connector.
-static double pixels_of(const span *s, const rank_options *opt)
-{
-    return fmax(1, s->length_mm * s->width_mm / (opt->pixel_mm * opt->pixel_mm));
-}
-
-// The stress that a beam alone would take off a hot spot a visible pixel, F guessed.
-static double guessed_worth(const beam *b, const span *s, const outlook *now, const double moved[BEAM_MODES],
-                            const double influence[BEAM_MODES], const rank_options *opt)
-{
-    double relief = 0;
-    double softness = 4 * (length_of(now->u[b->node[0]]) + length_of(now->u[b->node[3]])) / now->load_n;
-    for (int m = 0; m < b->mode_count; m++) {
-        // A turn's softness: that of a place which a force moves so far a length away.
-        bool turns = m == 0 || m == 1 || m == 3;
-        double f = turns ? softness / (s->length_mm * s->length_mm + s->width_mm * s->width_mm) : softness;
-        relief += influence[m] * moved[m] / (1 / b->stiffness[m] + f);
-    }
-    return relief / pixels_of(s, opt);
-}
-
-// Least distance between two straight connectors, each at nine places.
-double spans_apart(const jali_sheet *sheet, const span *a, const span *b)
-{
-    enum { PLACES = 8 };
-    double least2 = INFINITY;
-    for (int i = 0; i <= PLACES; i++)
-        for (int j = 0; j <= PLACES; j++) {
-            double sum = 0;
-            for (int k = 0; k < 3; k++) {
-                double p = sheet->node[a->node[0]][k] +
-                           (sheet->node[a->node[1]][k] - sheet->node[a->node[0]][k]) * i / PLACES;
-                double q = sheet->node[b->node[0]][k] +
-                           (sheet->node[b->node[1]][k] - sheet->node[b->node[0]][k]) * j / PLACES;
-                sum += (p - q) * (p - q);
-            }
-            least2 = fmin(least2, sum);
-        }
-    return sqrt(least2);
-}
-
-static bool same_place(const jali_sheet *sheet, const span *a, const span *b)
-{
-    if (a->width_mm != b->width_mm) return false;
-    double straight = fmax(distance(sheet->node[a->node[0]], sheet->node[b->node[0]]),
-                           distance(sheet->node[a->node[1]], sheet->node[b->node[1]]));
-    double turned = fmax(distance(sheet->node[a->node[0]], sheet->node[b->node[1]]),
-                         distance(sheet->node[a->node[1]], sheet->node[b->node[0]]));
-    return fmin(straight, turned) < 2 * a->width_mm;
-}
-
-// The best so far, the best first.
-typedef struct podium {
-    int32_t count, places;
-    span best[MOST_PLACES];
-} podium;
-
-// Take a span in when it is among the best; of those in one place only the best stays.
-static void compete(const jali_sheet *sheet, const borders *loops, podium *p, const span *s)
-{
-    int32_t at = p->count;
-    if (s->worth <= 0 || (at == p->places && s->worth <= p->best[at - 1].worth)) return;
-    if (!plank_has_room(sheet, loops, s)) return;
-    for (int32_t i = 0; i < p->count; i++)
-        if (same_place(sheet, s, &p->best[i])) {
-            if (s->worth <= p->best[i].worth) return;
-            memmove(p->best + i, p->best + i + 1, (size_t)(--p->count - i) * sizeof *p->best);
-            i--;
-        }
-    p->count -= p->count == p->places;
-    for (at = p->count++; at > 0 && p->best[at - 1].worth < s->worth; at--) p->best[at] = p->best[at - 1];
-    p->best[at] = *s;
-}
-
-// The best spans of each width for each hot spot, twice as many for the highest; no two in the same place.
-static int32_t sieve(const jali_sheet *sheet, const borders *loops, const spans *all,
-                     const jali_material *material, bool bending_only, const outlook *now,
-                     const rank_options *opt, podium *podiums, span best[SIEVED])
-{
-    int32_t count = 0, shares = WIDTHS * (now->hotspot_count + 1);
-    for (int32_t k = 0; k < WIDTHS * now->hotspot_count; k++)
-        podiums[k] = (podium){.places = MIN((k < WIDTHS ? 2 : 1) * SIEVED / shares, MOST_PLACES)};
-    for (int32_t i = 0; i < all->count; i++) {
-        beam b;
-        span s = all->span[i];
-        double moved[BEAM_MODES], influence[MOST_HOTSPOTS][BEAM_MODES];
-        for (int w = 0; w < WIDTHS; w++) { // deformations are the same in every width
-            s.width_mm = times_wider[w] * opt->width_mm;
-            beam_along(sheet, loops, &s, material, bending_only, &b);
-            if (w == 0) beam_deformation(&b, now->u, moved);
-            for (int32_t h = 0; h < now->hotspot_count; h++) {
-                if (w == 0) beam_deformation(&b, now->adjoint[h], influence[h]);
-                s.worth = guessed_worth(&b, &s, now, moved, influence[h], opt);
-                compete(sheet, loops, &podiums[h * WIDTHS + w], &s);
-            }
-        }
-    }
-    for (int32_t k = 0; k < WIDTHS * now->hotspot_count; k++)
-        for (int32_t i = 0; i < podiums[k].count; i++) {
-            bool taken = false;
-            for (int32_t j = 0; j < count && !taken; j++)
-                taken = same_place(sheet, &podiums[k].best[i], &best[j]);
-            if (!taken) best[count++] = podiums[k].best[i];
-        }
-    return count;
-}
-
-// --- Exactly, by modes
 
 /// Connectors laid and candidates; mode j of connector i is row 6 i + j.
 typedef struct table {
@@ -186,50 +65,72 @@ static int32_t ends_of(const structure *s, const table *t, int32_t *row)
     return kept;
 }
 
-// Weights of a beam's mode, by place among the rows; returns how many.
-static int32_t weights_of(const structure *s, const beam *b, int m, const int32_t *row, int32_t row_count,
-                          int32_t *at, double *weight)
+enum { MOST_WEIGHTS = BEAM_NODES * 6 };
+
+// A beam's mode as a sum over unknowns at its ends.
+typedef struct mode_weights {
+    int32_t count, at[MOST_WEIGHTS]; // places among the rows
+    double weight[MOST_WEIGHTS];
+} mode_weights;
+
+static void weigh_mode(const structure *s, const beam *b, int m, const int32_t *row, int32_t row_count,
+                       mode_weights *w)
 {
-    int32_t count = 0;
+    w->count = 0;
     for (int32_t n = 0; n < BEAM_NODES; n++)
         for (int bit = 0; bit < 6; bit++) {
             int32_t r = unknown_at(s, b->node[n], bit);
             if (r < 0 || b->weight[m][n][bit] == 0) continue;
-            at[count] = index_of(row, row_count, r);
-            weight[count++] = b->weight[m][n][bit];
+            w->at[w->count] = index_of(row, row_count, r);
+            w->weight[w->count++] = b->weight[m][n][bit];
         }
-    return count;
+}
+
+typedef struct flexibility_job {
+    table *t;
+    const mode_weights *mode; // [rows]; none where a beam has fewer modes
+    const double *inverse;    // [count * count]
+    size_t count;
+} flexibility_job;
+
+// A row of F up to the diagonal, and its mirror.
+static void fill_row(void *shared, int32_t p)
+{
+    const flexibility_job *job = shared;
+    const mode_weights *mine = &job->mode[p];
+    table *t = job->t;
+    for (int32_t q = 0; q <= p; q++) {
+        const mode_weights *yours = &job->mode[q];
+        double sum = 0;
+        for (int32_t i = 0; i < mine->count; i++) {
+            const double *from = job->inverse + (size_t)mine->at[i] * job->count;
+            for (int32_t j = 0; j < yours->count; j++)
+                sum += mine->weight[i] * yours->weight[j] * from[yours->at[j]];
+        }
+        t->f[p * t->rows + q] = t->f[q * t->rows + p] = sum;
+    }
 }
 
 static jali_status fill_flexibility(jali_context *ctx, structure *s, table *t)
 {
     jali_status status;
-    enum { MOST_WEIGHTS = BEAM_NODES * 6 };
-    int32_t *row = NULL, at[2][MOST_WEIGHTS];
-    double *inverse = NULL, weight[2][MOST_WEIGHTS];
+    int32_t *row = NULL;
+    double *inverse = NULL;
+    mode_weights *mode = NULL;
     TRY(ALLOCATE(ctx, row, (size_t)t->count * MOST_WEIGHTS));
     int32_t count = ends_of(s, t, row);
     TRY(ALLOCATE(ctx, inverse, (size_t)count * (size_t)count));
+    TRY(ALLOCATE_CLEARED(ctx, mode, t->rows));
     TRY(solver_inverse(ctx, s->solver, count, row, count, row, inverse));
     for (int32_t p = 0; p < t->rows; p++) {
-        const beam *one = &t->beam[p / BEAM_MODES];
-        if (p % BEAM_MODES >= one->mode_count) continue;
-        int32_t mine = weights_of(s, one, p % BEAM_MODES, row, count, at[0], weight[0]);
-        for (int32_t q = 0; q <= p; q++) {
-            const beam *other = &t->beam[q / BEAM_MODES];
-            double sum = 0;
-            if (q % BEAM_MODES >= other->mode_count) continue;
-            int32_t yours = weights_of(s, other, q % BEAM_MODES, row, count, at[1], weight[1]);
-            for (int32_t i = 0; i < mine; i++)
-                for (int32_t j = 0; j < yours; j++)
-                    sum += weight[0][i] * weight[1][j] *
-                           inverse[(size_t)at[0][i] * (size_t)count + (size_t)at[1][j]];
-            t->f[p * t->rows + q] = t->f[q * t->rows + p] = sum;
-        }
+        const beam *b = &t->beam[p / BEAM_MODES];
+        if (p % BEAM_MODES < b->mode_count) weigh_mode(s, b, p % BEAM_MODES, row, count, &mode[p]);
     }
+    parallel(ctx, t->rows, fill_row, &(flexibility_job){t, mode, inverse, (size_t)count});
 done:
     release(ctx, row);
     release(ctx, inverse);
+    release(ctx, mode);
     return status;
 }
 
@@ -335,7 +236,7 @@ static int32_t best_connector(const table *t, const span *candidate, const uint8
     if (most < 0.01 * t->stress_mpa[hot]) return -1;
     for (int32_t i = t->laid; i < t->count; i++) {
         if (out[i] || harms(t, i, hot)) continue;
-        double relief = relief_of(t, i, hot), a_pixel = relief / pixels_of(&candidate[i - t->laid], opt);
+        double relief = relief_of(t, i, hot), a_pixel = relief / visible_pixels(&candidate[i - t->laid], opt);
         if (relief < 0.25 * most || a_pixel <= worth) continue;
         worth = a_pixel;
         best = i;
@@ -365,15 +266,14 @@ jali_status rank_spans(jali_context *ctx, structure *s, const jali_sheet *sheet,
                        const outlook *now, const rank_options *opt, span *chosen, int32_t *count)
 {
     jali_status status;
+    int32_t sieved;
     span candidate[SIEVED];
     table t = {.laid = laid_count, .hotspots = now->hotspot_count};
     beam *beams = NULL;
     uint8_t *out = NULL;
-    podium *podiums = NULL;
     *count = 0;
     if (now->hotspot_count == 0) return JALI_OK;
-    TRY(ALLOCATE(ctx, podiums, WIDTHS * MOST_HOTSPOTS));
-    int32_t sieved = sieve(sheet, loops, all, material, s->bending_only, now, opt, podiums, candidate);
+    TRY(sieve_spans(ctx, sheet, loops, all, material, s->bending_only, now, opt, candidate, &sieved));
     t.count = laid_count + sieved;
     t.rows = BEAM_MODES * t.count;
     if (sieved == 0) goto done;
@@ -396,7 +296,6 @@ jali_status rank_spans(jali_context *ctx, structure *s, const jali_sheet *sheet,
     TRY(fill_flexibility(ctx, s, &t));
     choose(sheet, &t, candidate, out, opt, chosen, count);
 done:
-    release(ctx, podiums);
     release(ctx, beams);
     release(ctx, out);
     table_free(ctx, &t);

@@ -164,6 +164,21 @@ done:
 
 // --- The best
 
+typedef struct gradient_job {
+    const search *s;
+    const outlook *now;
+    const int32_t *node;   // of the hot spots
+    double (*gradient)[6]; // [hotspot_count * node_count]
+} gradient_job;
+
+static void find_gradient(void *shared, int32_t h)
+{
+    const gradient_job *job = shared;
+    const jali_analyse_options *opt = analysed_as(job->s);
+    stress_gradient(job->s->sheet, &opt->material, job->now->u, job->node[h], opt->phi_s_mm / 2,
+                    job->gradient + (size_t)h * job->s->sheet->node_count);
+}
+
 // Hot spots of the sheet, and K^-1 times the gradient of each.
 static jali_status know_outlook(jali_context *ctx, search *s, double (*adjoint)[6], outlook *now)
 {
@@ -175,11 +190,10 @@ static jali_status know_outlook(jali_context *ctx, search *s, double (*adjoint)[
     now->hotspot_count = find_hotspots(s->sheet, s->now.mean_mpa, 8 * opt->phi_s_mm, node);
     TRY(ALLOCATE(ctx, gradient, (size_t)now->hotspot_count * (size_t)n));
     for (int32_t h = 0; h < now->hotspot_count; h++) {
-        stress_gradient(s->sheet, &opt->material, now->u, node[h], opt->phi_s_mm / 2,
-                        gradient + (size_t)h * n);
         now->stress_mpa[h] = s->now.mean_mpa[node[h]];
         now->adjoint[h] = (const double(*)[6])adjoint + (size_t)h * n;
     }
+    parallel(ctx, now->hotspot_count, find_gradient, &(gradient_job){s, now, node, gradient});
     const double(*loads)[6] = (const double(*)[6])gradient;
     TRY(structure_influence(ctx, s->structure, now->hotspot_count, loads, adjoint));
     if (s->count > 0)

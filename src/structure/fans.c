@@ -44,17 +44,30 @@ static int32_t across(const jali_sheet *sheet, const fans *f, int32_t t, int32_t
     return found;
 }
 
-static void join_sides(const jali_sheet *sheet, const double (*normal)[3], const double *thickness, fans *f)
+// What the passes over blocks of triangles or nodes share.
+typedef struct fan_job {
+    const jali_sheet *sheet;
+    const double (*normal)[3];
+    const double *thickness;
+    fans *f;
+} fan_job;
+
+enum { BLOCK = 1024 };
+
+static void join_sides(void *shared, int32_t block)
 {
-    for (int32_t t = 0; t < sheet->triangle_count; t++)
+    const fan_job *job = shared;
+    const jali_sheet *sheet = job->sheet;
+    for (int32_t t = block * BLOCK; t < MIN((block + 1) * BLOCK, sheet->triangle_count); t++)
         for (int i = 0; i < 3; i++) {
-            int32_t o = across(sheet, f, t, sheet->triangle[t][i], sheet->triangle[t][(i + 1) % 3]);
-            f->beside[3 * t + i] = o;
+            int32_t o = across(sheet, job->f, t, sheet->triangle[t][i], sheet->triangle[t][(i + 1) % 3]);
+            job->f->beside[3 * t + i] = o;
             if (o < 0) continue;
-            double along =
-                normal[t][0] * normal[o][0] + normal[t][1] * normal[o][1] + normal[t][2] * normal[o][2];
-            double thick = MAX(thickness[t], thickness[o]), thin = MIN(thickness[t], thickness[o]);
-            f->smooth[3 * t + i] = along >= CREASE && thick <= STEP * thin;
+            const double *n = job->normal[t], *m = job->normal[o];
+            double along = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
+            double thick = MAX(job->thickness[t], job->thickness[o]),
+                   thin = MIN(job->thickness[t], job->thickness[o]);
+            job->f->smooth[3 * t + i] = along >= CREASE && thick <= STEP * thin;
         }
 }
 
@@ -75,15 +88,36 @@ static void mark_fan(const jali_sheet *sheet, fans *f, int32_t corner, int32_t n
         }
 }
 
-static void number_fans(const jali_sheet *sheet, fans *f)
+// Around each node from 0 on; how many there are stands at the next node's first.
+static void mark_fans(void *shared, int32_t block)
 {
-    for (int32_t c = 0; c < 3 * sheet->triangle_count; c++) f->fan[c] = -1;
-    for (int32_t n = 0; n < f->node_count; n++) {
-        f->first_fan[n] = f->fan_count;
+    const fan_job *job = shared;
+    fans *f = job->f;
+    for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, f->node_count); n++) {
+        int32_t count = 0;
+        for (int32_t i = f->first[n]; i < f->first[n + 1]; i++) f->fan[f->corner[i]] = -1;
         for (int32_t i = f->first[n]; i < f->first[n + 1]; i++)
-            if (f->fan[f->corner[i]] < 0) mark_fan(sheet, f, f->corner[i], f->fan_count++);
+            if (f->fan[f->corner[i]] < 0) mark_fan(job->sheet, f, f->corner[i], count++);
+        f->first_fan[n + 1] = count;
     }
-    f->first_fan[f->node_count] = f->fan_count;
+}
+
+static void shift_fans(void *shared, int32_t block)
+{
+    fans *f = ((const fan_job *)shared)->f;
+    for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, f->node_count); n++)
+        for (int32_t i = f->first[n]; i < f->first[n + 1]; i++) f->fan[f->corner[i]] += f->first_fan[n];
+}
+
+static void number_fans(jali_context *ctx, fan_job *job)
+{
+    fans *f = job->f;
+    int32_t blocks = (f->node_count + BLOCK - 1) / BLOCK;
+    parallel(ctx, blocks, mark_fans, job);
+    f->first_fan[0] = 0;
+    for (int32_t n = 0; n < f->node_count; n++) f->first_fan[n + 1] += f->first_fan[n];
+    f->fan_count = f->first_fan[f->node_count];
+    parallel(ctx, blocks, shift_fans, job);
 }
 
 jali_status fans_of(jali_context *ctx, const jali_sheet *sheet, const double (*normal)[3],
@@ -102,8 +136,9 @@ jali_status fans_of(jali_context *ctx, const jali_sheet *sheet, const double (*n
     TRY(ALLOCATE(ctx, f->fan, corners));
     TRY(ALLOCATE(ctx, f->first_fan, nodes + 1));
     list_corners(sheet, f);
-    join_sides(sheet, normal, thickness, f);
-    number_fans(sheet, f);
+    fan_job job = {sheet, normal, thickness, f};
+    parallel(ctx, (sheet->triangle_count + BLOCK - 1) / BLOCK, join_sides, &job);
+    number_fans(ctx, &job);
 done:
     if (status != JALI_OK) fans_free(ctx, f);
     return status;
