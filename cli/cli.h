@@ -41,6 +41,7 @@ typedef struct settings {
     int32_t size_px;               // of a sample or a render
     jali_render_options view;      // of a render
     jali_board_options board;
+    jali_smallest_options smallest;
     const char *measured;           // widths typed in
     double dpi;                     // of a scan; 0 = not said
     bool skip_intersections, walls; // of check
@@ -80,6 +81,7 @@ typedef enum option_group {
     GROUP_CALIBRATE = 1048576,
     GROUP_WITNESS = 1 << 22, // a printed result to compare with
     GROUP_SERVE = 1 << 23,
+    GROUP_SMALLEST = 1 << 24,
     NEEDS_NO_OPERAND = 1 << 29,   // no options either: the operand may be left out
     WRITES_NOTHING_TOO = 1 << 30, // no options: what is to be written, -o, may be left out
 } option_group;
@@ -110,6 +112,7 @@ jali_status run_predict(jali_context *ctx, const settings *set);
 jali_status run_serve(jali_context *ctx, const settings *set);
 jali_status run_place(jali_context *ctx, const settings *set);
 jali_status run_read(jali_context *ctx, const settings *set);
+jali_status run_smallest(jali_context *ctx, const settings *set);
 jali_status run_printer(jali_context *ctx, const settings *set);
 
 /// Draw a mesh as the settings say, as a PNG; appended.

@@ -40,10 +40,13 @@ static json_t *predict_of(const settings *set, const jali_result *r)
 {
     bool recall = set->make.recall;
     if (!set->make.predict) return json_null();
-    return json_pack("{s:f, s:f, s:f, s:o, s:o, s:o}", "error_rate_input", r->input_print.error_rate,
+    json_t *lost =
+        recall && r->lost.where.width_px > 0 ? lost_of(&r->lost.white, &r->lost.black) : json_null();
+    return json_pack("{s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "error_rate_input", r->input_print.error_rate,
                      "error_rate_connected", r->connected_print.error_rate, "error_rate_result",
                      r->result_print.error_rate, "input", print_of(&r->input_print, recall), "connected",
-                     print_of(&r->connected_print, recall), "result", print_of(&r->result_print, recall));
+                     print_of(&r->connected_print, recall), "result", print_of(&r->result_print, recall),
+                     "lost", lost);
 }
 
 static json_t *mesh_of(const made *m)
@@ -147,6 +150,16 @@ static json_t *picture_of(const settings *set, const jali_picture *picture, cons
                      (json_int_t)r->optimised.bridge_pixels, "pieces_dropped", r->optimised.pieces_dropped,
                      "adapt", adapt_of(&r->optimised), "nudge", nudge_of(set, &r->nudge), "predict",
                      predict_of(set, r), "structure", structure_of(set, &r->strength));
+}
+
+static json_t *tone_of(const jali_lost_tone *tone)
+{
+    return json_pack("{s:i, s:i}", "parts", tone->parts, "stretches", tone->stretches);
+}
+
+json_t *lost_of(const jali_lost_tone *white, const jali_lost_tone *black)
+{
+    return json_pack("{s:o, s:o}", "white", tone_of(white), "black", tone_of(black));
 }
 
 // The first picture's figures stand at the top; a job lists all of them as "pictures" too.

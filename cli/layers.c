@@ -56,6 +56,12 @@ static jali_status print_png(jali_context *ctx, const made *m, jali_bytes *png)
     return jali_bitmap_png(ctx, &m->result[0].result_print.printed, 0, png);
 }
 
+static jali_status lost_png(jali_context *ctx, const made *m, jali_bytes *png)
+{
+    if (!m->set[0].make.predict) return no_prediction(ctx);
+    return jali_bitmap_png(ctx, &m->result[0].lost.where, 0, png);
+}
+
 static jali_status errors_png(jali_context *ctx, const made *m, jali_bytes *png)
 {
     const jali_result *r = &m->result[0];
@@ -149,10 +155,15 @@ done:
 }
 
 static const layer layers[] = {
-    {"input.png", false, input_png},        {"bridges.png", false, bridges_png},
-    {"conflicts.png", true, conflicts_png}, {"print.png", false, print_png},
-    {"errors.png", false, errors_png},      {"mesh.bin", false, mesh_bin},
-    {"stress.bin", false, stress_bin},      {"displacement.bin", false, displacement_bin},
+    {"input.png", false, input_png},
+    {"bridges.png", false, bridges_png},
+    {"conflicts.png", true, conflicts_png},
+    {"print.png", false, print_png},
+    {"errors.png", false, errors_png},
+    {"mesh.bin", false, mesh_bin},
+    {"lost.png", true, lost_png},
+    {"stress.bin", false, stress_bin},
+    {"displacement.bin", false, displacement_bin},
     {"surface.bin", false, surface_bin},
 };
 

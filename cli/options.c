@@ -157,6 +157,13 @@ static const option options[] = {
     {"walls", NULL, FLAG, GROUP_CHECK, FIELD(walls), 0, 0, 0,
      "measure the thinnest wall and the narrowest gap as well"},
 
+    {"least", "MM", NUMBER, GROUP_SMALLEST, FIELD(smallest.least_mm), 0.1, 10000, "mm", "the smallest width to try (10)"},
+    {"most", "MM", NUMBER, GROUP_SMALLEST, FIELD(smallest.most_mm), 0.1, 10000, "mm", "the largest width to try (400)"},
+    {"precision", "SHARE", NUMBER, GROUP_SMALLEST, FIELD(smallest.precision), 0.001, 1, "",
+     "the answer is at most so much too large (0.03)"},
+    {"speck", "PX", WHOLE, GROUP_SMALLEST, FIELD(smallest.least_px), 1, 10000, "px",
+     "parts smaller and lines shorter than so many of the picture's pixels are no details (8)"},
+
     {"port", "N", WHOLE, GROUP_SERVE, FIELD(port), 0, 65535, 0, "port of the page; 0 takes one that is free (7170)"},
     {"jobs", "N", WHOLE, GROUP_SERVE, FIELD(jobs), 1, 64, 0, "so many jobs at one time, the others wait (all)"},
     {"job-memory", "MB", NUMBER, GROUP_SERVE, FIELD(job_memory_mb), 16, 1e6, "MB", "the most a job may hold (2000)"},
@@ -189,6 +196,7 @@ settings default_settings(void)
         .view = jali_render_defaults(),
         .phi_given_mm = {NAN, NAN, NAN},
         .board = jali_board_defaults(),
+        .smallest = jali_smallest_defaults(),
         .port = 7170,
         .job_memory_mb = 2000,
         .job_seconds = 600,

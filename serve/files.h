@@ -8,7 +8,7 @@ enum {
     MOST_JOB_FILES = 24,
     JOB_OPTIONS = GROUP_PICTURE | GROUP_SIZE | GROUP_METHOD | GROUP_PLATE | GROUP_SURFACE | GROUP_LOAD |
                   GROUP_REINFORCE | GROUP_VIEW |
-                  GROUP_SIDE // what a job may set, as far as its verb takes them
+                  GROUP_SIDE | GROUP_SMALLEST // what a job may set, as far as its verb takes them
 };
 
 typedef struct job_file {

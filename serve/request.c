@@ -112,7 +112,7 @@ static bool read_files(reading *r)
 
 static bool verb_is_fit(const char *name)
 {
-    static const char *const fit[] = {"carve", "adapt", "analyse", "read", "printer"};
+    static const char *const fit[] = {"carve", "adapt", "analyse", "read", "printer", "smallest"};
     for (size_t i = 0; i < sizeof fit / sizeof *fit; i++)
         if (strcmp(name, fit[i]) == 0) return true;
     return false;
@@ -124,7 +124,7 @@ static bool read_options(reading *r)
     json_t *options = json_object_get(r->root, "options");
     if (!text_of(r, "verb", 16, &name)) return false;
     if (name && !verb_is_fit(name))
-        return refuse(r, MHD_HTTP_BAD_REQUEST, "\"verb\" is carve, adapt, analyse, read or printer");
+        return refuse(r, MHD_HTTP_BAD_REQUEST, "\"verb\" is carve, adapt, analyse, read, printer or smallest");
     if (options && !json_is_object(options))
         return refuse(r, MHD_HTTP_BAD_REQUEST, "\"options\" of a job is an object, such as {\"width\": 60}");
     json_t *given = options ? json_copy(options) : json_object();

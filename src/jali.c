@@ -6,6 +6,7 @@
 // A plate is carved from its contours; a surface is hollowed out first, then each picture is pierced through
 // the wall, then the wall becomes a solid.
 #include <jali/jali.h>
+#include "agreed.h"
 #include "raster/raster.h"
 #include "base/base.h"
 
@@ -43,6 +44,7 @@ void jali_result_free(jali_context *ctx, jali_result *result)
     jali_prediction_free(ctx, &result->input_print);
     jali_prediction_free(ctx, &result->connected_print);
     jali_prediction_free(ctx, &result->result_print);
+    jali_lost_free(ctx, &result->lost);
     jali_contours_free(ctx, &result->contours);
     jali_mesh_free(ctx, &result->mesh);
     jali_strength_free(ctx, &result->strength);
@@ -56,8 +58,7 @@ static double now_seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// One truth for what several stages need to know.
-static jali_options agreed(const jali_options *given)
+jali_options agreed_options(const jali_options *given)
 {
     jali_options opt = given ? *given : jali_defaults();
     if (*opt.printer.name) {
@@ -134,7 +135,7 @@ jali_status jali_predict_picture(jali_context *ctx, jali_picture *picture, const
                                  jali_result *r)
 {
     jali_status status;
-    jali_options opt = agreed(given);
+    jali_options opt = agreed_options(given);
     jali_reference reference = {0};
     jali_bitmap plain = {0};
     jali_predict_options p = jali_prediction_options(&opt);
@@ -177,6 +178,18 @@ done:
     return status;
 }
 
+jali_lost_options lost_options(const jali_options *opt, const jali_chart *chart, const jali_optimised *made,
+                               int32_t picture_px)
+{
+    jali_lost_options what = jali_lost_defaults();
+    double picture_mm = jali_chart_pixel_mm(chart) * (chart->width_px - 2 * chart->margin_px);
+    double grown_mm = MAX(jali_prediction_options(opt).phi_e_void_mm, 0);
+    what.bridges = made->bridge_mask.width_px > 0 ? &made->bridge_mask : NULL;
+    what.margin_px = chart->margin_px;
+    what.reach_px = (int32_t)(grown_mm / 2 * picture_px / picture_mm);
+    return what;
+}
+
 // What the printer makes of the picture as it is, of the picture connected and no more, and of the result.
 static jali_status predict(jali_context *ctx, const jali_options *opt, jali_result *r)
 {
@@ -192,6 +205,10 @@ static jali_status predict(jali_context *ctx, const jali_options *opt, jali_resu
     TRY(jali_connect(ctx, &plain, NULL, &plain, NULL));
     TRY(jali_predict(ctx, &reference, &plain, MARGIN_PX, outside, &p, &r->connected_print));
     TRY(jali_predict(ctx, &reference, &r->optimised.mask, r->chart.margin_px, outside, &p, &r->result_print));
+    if (opt->recall && opt->optimise.details) {
+        jali_lost_options what = lost_options(opt, &r->chart, &r->optimised, r->input.width_px);
+        TRY(jali_find_lost(ctx, &reference, &r->result_print, &what, &r->lost));
+    }
     if (r->result_print.pieces == 0)
         status =
             fail(ctx, JALI_NO_RESULT,
@@ -272,7 +289,7 @@ done:
 jali_status jali_make(jali_context *ctx, jali_picture *picture, const jali_options *given, jali_result *r)
 {
     jali_status status;
-    jali_options opt = agreed(given);
+    jali_options opt = agreed_options(given);
     jali_contours outline = {0};
     *r = (jali_result){0};
     TRY(image_stages(ctx, picture, &opt, NULL, NULL, &outline, r));
@@ -320,7 +337,7 @@ static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const ja
                               double thickness_mm, jali_shell *shell, jali_result *r)
 {
     jali_status status;
-    jali_options opt = agreed(given);
+    jali_options opt = agreed_options(given);
     jali_patch patch = {0};
     jali_place_options *place = &opt.place;
     if (opt.repeat > 0 && place->width_mm == 0 && place->height_mm == 0) // all around, with a bar at the back

@@ -101,6 +101,7 @@ typedef struct jali_result {
     // What comes out of the printer, when predicted: of the input as it is, connected only, and of the
     // result.
     jali_prediction input_print, connected_print, result_print;
+    jali_lost lost; // what the last of them does not show; with `recall` and optimise's `details`
     jali_contours contours; // of the plate: picture, frame, hanging hole
     jali_mesh mesh;
     jali_check_report check;
@@ -160,4 +161,6 @@ JALI_API jali_status jali_make(jali_context *ctx, jali_picture *picture, const j
 #ifdef __cplusplus
 }
 #endif
+#include <jali/smallest.h>
+
 #endif

@@ -68,6 +68,42 @@ JALI_API jali_status jali_predict(jali_context *ctx, const jali_reference *refer
 JALI_API jali_status jali_measure(jali_context *ctx, const jali_reference *reference, jali_prediction *print);
 JALI_API void jali_prediction_free(jali_context *ctx, jali_prediction *prediction);
 
+typedef struct jali_lost_options {
+    int32_t
+        least_px; // smaller parts and shorter stretches are the raster's noise; in the picture's own pixels,
+                  // >= 1 (default 8)
+    const jali_bitmap *bridges; // voids had to be crossed there: solid that joins the pieces, on any grid
+                                // over the picture's area. NULL (default): nowhere
+    int32_t margin_px;          // the picture lies so far inside the border of `bridges` (0)
+    int32_t
+        reach_px; // how far they, and a frame, come out further than drawn, in the picture's own pixels (0)
+} jali_lost_options;
+
+JALI_API jali_lost_options jali_lost_defaults(void);
+
+/// Of one tone: parts (pieces, 4-connected; voids, 8-connected) of which nothing prints, and stretches
+/// (8-connected) of the medial axis elsewhere that do not print.
+typedef struct jali_lost_tone {
+    int32_t parts, stretches;
+} jali_lost_tone;
+
+/// What of a picture a print does not show (docs/predict.md). {0} is valid and empty.
+typedef struct jali_lost {
+    jali_lost_tone white, black;
+    jali_bitmap where; // the picture's own resolution: those parts and stretches
+} jali_lost;
+
+/// Find what is lost.
+///   in     reference  with its axes
+///          print      of the same picture
+///          opt        NULL means the defaults
+///   fails  JALI_BAD_VALUE (no axes, another size, least_px), JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+///   cost   O(pixels of the picture)
+JALI_API jali_status jali_find_lost(jali_context *ctx, const jali_reference *reference,
+                                    const jali_prediction *print, const jali_lost_options *opt,
+                                    jali_lost *lost);
+JALI_API void jali_lost_free(jali_context *ctx, jali_lost *lost);
+
 /// Draw how a print differs from the picture, as a PNG: solid light, void dark; red where solid is missing,
 /// yellow where there is too much.
 ///   in     wanted    the picture, on any grid that covers the same area as the print's
