@@ -145,10 +145,10 @@ TEST(stripes_are_whole_from_the_size_at_which_bar_and_gap_fit)
     jali_smallest_options range = jali_smallest_defaults();
     range.least_mm = 4;
     range.most_mm = 200;
-    for (int32_t pitch = 12; pitch <= 36; pitch += 12) {
+    for (int32_t pitch = 12; pitch <= 36; pitch += 24) {
         jali_smallest s;
-        jali_picture p = stripes(360, pitch);
-        double wanted_mm = 360.0 / pitch * (opt.optimise.phi_s_mm + opt.optimise.phi_v_mm);
+        jali_picture p = stripes(180, pitch);
+        double wanted_mm = 180.0 / pitch * (opt.optimise.phi_s_mm + opt.optimise.phi_v_mm);
         CHECK_OK(jali_find_smallest(ctx, &p, &opt, &range, &s));
         CHECK(s.width_mm > 0.9 * wanted_mm && s.width_mm < 1.15 * wanted_mm);
         CHECK(s.confirmed_mm > s.width_mm);
@@ -183,12 +183,12 @@ TEST(what_no_size_keeps_is_said_so_and_bad_ranges_are_refused)
 TEST(the_same_for_any_number_of_threads)
 {
     jali_smallest s[2];
-    jali_smallest_options range = {5, 60, 0.05, 8};
+    jali_smallest_options range = {5, 30, 0.2, 8};
     jali_context *alone;
     jali_context_options one = jali_context_defaults();
     one.threads = 1;
     CHECK_OK(jali_context_create(&one, &alone));
-    jali_picture p = stripes(200, 20);
+    jali_picture p = stripes(100, 20);
     CHECK_OK(jali_find_smallest(ctx, &p, NULL, &range, &s[0]));
     CHECK_OK(jali_find_smallest(alone, &p, NULL, &range, &s[1]));
     CHECK_INT(s[0].try_count, s[1].try_count);
@@ -200,13 +200,13 @@ TEST(the_same_for_any_number_of_threads)
 static jali_status find(jali_context *limited, void *data)
 {
     jali_smallest s;
-    jali_smallest_options range = {3, 6, 0.5, 8};
+    jali_smallest_options range = {2, 2.5, 1, 8};
     return jali_find_smallest(limited, data, NULL, &range, &s);
 }
 
 TEST(each_allocation_may_be_refused)
 {
-    jali_picture p = stripes(32, 8);
+    jali_picture p = stripes(16, 8);
     refuse_each_allocation(find, &p);
     jali_picture_free(ctx, &p);
 }
