@@ -83,6 +83,8 @@ static const option options[] = {
      "a perspective: the eye, where it looks at, and the picture's width as an angle"},
     {"repeat", "N", WHOLE, GROUP_SURFACE, FIELD(make.repeat), 1, 1000, 0,
      "so many copies side by side; without a size they fill the way around (1)"},
+    {"around", NULL, FLAG, GROUP_SURFACE, FIELD(make.around), 0, 0, 0,
+     "all around, copy beside copy, no bar at the back; without a size of its own"},
     {"backing", "MM", NUMBER, GROUP_SURFACE, FIELD(make.backing_mm), 0, 1000, "mm",
      "a film inside that stays behind the voids of a surface (0: none)"},
     {"thinnest", "MM", NUMBER, GROUP_SURFACE, FIELD(wall.least_mm), 0.01, 1000, "mm",
@@ -273,8 +275,8 @@ static bool set_operand(const verb *v, const char *text, settings *set, char *se
 void settle_options(settings *set)
 {
     jali_place_options *place = &set->make.place;
-    bool all_around =
-        set->make.repeat > 0 && place->placing != JALI_PLACE_PROJECT; // then that gives the size
+    bool all_around = (set->make.repeat > 0 || set->make.around) &&
+                      place->placing != JALI_PLACE_PROJECT; // then that gives the size
     if (place->width_mm == 0 && place->height_mm == 0 && place->camera.fov_deg == 0 && !all_around)
         place->width_mm = jali_place_defaults().width_mm;
     const jali_load *load = &set->make.strengthen.analyse.load;

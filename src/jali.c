@@ -252,6 +252,7 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     jali_bitmap drawing = {0};
     jali_picture row = {0};
     jali_place_options place = opt->place;
+    int32_t pieces = 0;
     jali_wall wall = {.plate = shell ? NULL : &opt->carve, .shell = shell, .patch = patch};
     double begun = now_seconds();
     if (opt->repeat > 1) {
@@ -267,11 +268,18 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     else
         TRY(jali_place(ctx, picture, r->threshold, &place, &r->chart, &drawing));
     lap(r->seconds, JALI_STAGE_PLACE, &begun);
-    TRY(jali_optimise(ctx, &drawing, &r->chart, &opt->optimise, &r->optimised));
+    if (place.around > 0)
+        TRY(jali_optimise_around(ctx, &drawing, &r->chart, place.around, &opt->optimise, &r->optimised,
+                                 &pieces));
+    else
+        TRY(jali_optimise(ctx, &drawing, &r->chart, &opt->optimise, &r->optimised));
     lap(r->seconds, JALI_STAGE_OPTIMISE, &begun);
     if (opt->nudge_rounds) TRY(nudge(ctx, opt, r));
     lap(r->seconds, JALI_STAGE_NUDGE, &begun);
-    if (opt->solid) TRY(jali_trace(ctx, &r->optimised.mask, &r->chart, &opt->trace, outline));
+    if (opt->solid && place.around > 0)
+        TRY(jali_trace_around(ctx, &r->optimised.mask, &r->chart, &opt->trace, outline));
+    else if (opt->solid)
+        TRY(jali_trace(ctx, &r->optimised.mask, &r->chart, &opt->trace, outline));
     lap(r->seconds, JALI_STAGE_TRACE, &begun);
     if (opt->solid && opt->structure)
         TRY(jali_strengthen(ctx, &r->chart, &wall, &opt->optimise, &opt->trace, &opt->strengthen,
@@ -279,6 +287,7 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     lap(r->seconds, JALI_STAGE_STRENGTHEN, &begun);
     if (opt->predict) TRY(predict(ctx, opt, r));
     TRY(judge_mask(ctx, opt, r));
+    if (place.around > 0) r->one_piece = pieces == 1; // its pieces are counted on the closed strip
     lap(r->seconds, JALI_STAGE_PREDICT, &begun);
 done:
     jali_bitmap_free(ctx, &drawing);
@@ -333,6 +342,22 @@ static double thinnest_wall(const jali_shell *shell, const jali_patch *patch)
     return sqrt(least2);
 }
 
+// The size of a picture that goes all around, copy by copy.
+static jali_status go_around(jali_context *ctx, jali_options *opt, const jali_shell *shell)
+{
+    jali_place_options *place = &opt->place;
+    if (place->width_mm != 0 || place->height_mm != 0)
+        return fail(
+            ctx, JALI_BAD_VALUE,
+            "a picture that goes all around has the size that this gives it; leave out width and height");
+    if (opt->nudge_rounds > 0 || opt->structure)
+        return fail(ctx, JALI_BAD_VALUE, "a picture that goes all around can be neither %s",
+                    opt->structure ? "loaded nor strengthened" : "nudged");
+    place->around = MAX(opt->repeat, 1);
+    place->width_mm = shell->outer.around_mm > 0 ? shell->outer.around_mm / place->around : 1;
+    return JALI_OK;
+}
+
 static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const jali_options *given,
                               double thickness_mm, jali_shell *shell, jali_result *r)
 {
@@ -340,7 +365,10 @@ static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const ja
     jali_options opt = agreed_options(given);
     jali_patch patch = {0};
     jali_place_options *place = &opt.place;
-    if (opt.repeat > 0 && place->width_mm == 0 && place->height_mm == 0) // all around, with a bar at the back
+    if (opt.around)
+        TRY(go_around(ctx, &opt, shell));
+    else if (opt.repeat > 0 && place->width_mm == 0 &&
+             place->height_mm == 0) // all around, with a bar at the back
         place->width_mm = shell->outer.around_mm > 0
                               ? (shell->outer.around_mm - MAX(place->frame_mm, place->phi_s_mm)) / opt.repeat
                               : jali_place_defaults().width_mm;

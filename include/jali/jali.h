@@ -13,6 +13,7 @@
 
 #include <jali/adapt.h>
 #include <jali/analyse.h>
+#include <jali/around.h>
 #include <jali/base.h>
 #include <jali/bitmap.h>
 #include <jali/board.h>
@@ -74,7 +75,9 @@ typedef struct jali_options {
                           // at most so many rounds; 0 (default) = not
     jali_trace_options trace;
     jali_carve_options carve;
-    int32_t repeat;    // so many copies of the picture side by side, each of place's size, 1 .. 1000; 0 = 1
+    int32_t repeat; // so many copies of the picture side by side, each of place's size, 1 .. 1000; 0 = 1
+    bool around;    // the picture, or its copies, go once around the surface and meet at the back without a
+                    // bar (default false); then they have no size of their own
     double backing_mm; // on surfaces: a film at the inner skin that stays in the voids; 0 (default) = none
     bool predict;      // say what input, connected only and result come out as (default true)
     bool recall;       // with the share of fine detail that survives (default true; slower)

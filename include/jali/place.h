@@ -41,6 +41,10 @@ typedef struct jali_place_options {
     // On surfaces alone:
     jali_placing placing;
     jali_camera camera;
+    int32_t
+        around; // > 0: once around a surface that closes, in so many equal parts of whole columns; width_mm
+                // is the way around then, and the margins left and right show what lies beyond. Its ends
+                // meet where the surface is unrolled (at the back), so that at_mm says its height alone
     bool at_given;   // the picture's centre goes to the place of the surface
     double at_mm[3]; // - projected: that lies behind this point; wrapped: nearest to it. Default: chosen
 } jali_place_options;

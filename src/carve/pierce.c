@@ -19,6 +19,7 @@
 #include "plane/triangulation.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { NO_FACE = -1, UNSEEN = -2 };
 
@@ -39,6 +40,7 @@ typedef struct piercing {
     int32_t *face;    // [triangle_count] face of the patch each cell lies on
     uint8_t *tone;    // [triangle_count] 1 = void
     int32_t *carrier; // [s.point_count] a crease that the place lies on, or -1
+    int32_t *same;    // [s.point_count] itself, or the place on the other side of the seam
     int32_t *vertex;  // [s.point_count] vertex of the pierced shell, or -1: none yet
     double unit_mm;   // of the chart's lattice, for sentences
 } piercing;
@@ -266,6 +268,47 @@ done:
     return status;
 }
 
+// Where the chart is cut open, both sides of the cut have the same vertices at its ends: what comes in
+// between on one side does so on the other, at the same height (the chart's seam is upright), and is one
+// vertex too.
+typedef struct seam_place {
+    int32_t low, high; // vertices of the edge
+    int32_t height, place;
+} seam_place;
+
+static int compare_seam_places(const void *left, const void *right)
+{
+    const seam_place *a = left, *b = right;
+    if (a->low != b->low) return a->low < b->low ? -1 : 1;
+    if (a->high != b->high) return a->high < b->high ? -1 : 1;
+    if (a->height != b->height) return a->height < b->height ? -1 : 1;
+    return a->place < b->place ? -1 : a->place > b->place;
+}
+
+static jali_status join_seam(jali_context *ctx, piercing *p)
+{
+    jali_status status;
+    seam_place *seam;
+    int32_t count = 0;
+    TRY(ARENA(ctx, seam, p->s.point_count + 1));
+    TRY(ARENA(ctx, p->same, p->s.point_count + 1));
+    for (int32_t i = 0; i < p->s.point_count; i++) {
+        p->same[i] = i;
+        if (p->vertex[i] >= 0 || p->carrier[i] < 0) continue;
+        const crease *c = &p->crease[p->carrier[i]];
+        if (c->right != NO_FACE) continue;
+        int32_t a = p->patch->vertex[c->from], b = p->patch->vertex[c->to];
+        seam[count++] = (seam_place){MIN(a, b), MAX(a, b), p->s.point[i][1], i};
+    }
+    if (count) qsort(seam, (size_t)count, sizeof *seam, compare_seam_places);
+    for (int32_t i = 1; i < count; i++)
+        if (seam[i].low == seam[i - 1].low && seam[i].high == seam[i - 1].high &&
+            seam[i].height == seam[i - 1].height)
+            p->same[seam[i].place] = p->same[seam[i - 1].place];
+done:
+    return status;
+}
+
 // --- The pierced shell
 
 static bool stays(const piercing *p, int32_t t, double backing)
@@ -324,12 +367,12 @@ static void add_cell(piercing *p, int32_t t, double backing, jali_shell *out)
     jali_mesh *mesh = &out->outer.mesh;
     int32_t into = mesh->triangle_count++, face = p->face[t];
     for (int k = 0; k < 3; k++) {
-        int32_t place = p->plane.corner[4 * t + k];
-        if (p->vertex[place] < 0) {
-            p->vertex[place] = mesh->vertex_count++;
-            lift(p, place, face, mesh->vertex[p->vertex[place]], out->inner[p->vertex[place]]);
+        int32_t place = p->plane.corner[4 * t + k], same = p->same[place];
+        if (p->vertex[same] < 0) {
+            p->vertex[same] = mesh->vertex_count++;
+            lift(p, place, face, mesh->vertex[p->vertex[same]], out->inner[p->vertex[same]]);
         }
-        mesh->triangle[into][k] = p->vertex[place];
+        mesh->triangle[into][k] = p->vertex[same];
         if (out->outer.uv) lift_uv(p, face, p->s.point[place], out->outer.uv[into][k]);
     }
     if (out->outer.faulty) out->outer.faulty[into] = p->shell->outer.faulty[p->patch->face[face]];
@@ -376,6 +419,7 @@ jali_status jali_pierce(jali_context *ctx, const jali_contours *picture, const j
     TRY(label_tones(ctx, &p.plane, EDGE_CONTOUR, p.tone));
     TRY(check_cover(ctx, &p));
     TRY(find_carriers(ctx, &p));
+    TRY(join_seam(ctx, &p));
     TRY(build(ctx, &p, backing));
     TRY(step(ctx, "carve", 0.8));
 done:

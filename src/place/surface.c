@@ -166,12 +166,24 @@ done:
     return status;
 }
 
+// Turn the plane until the surface's seam is at both ends of the way around.
+static void turn_back(const jali_surface *surface, laid *plane)
+{
+    double low = INFINITY;
+    int32_t triangles = surface->mesh.triangle_count;
+    for (int32_t i = 0; i < 3 * triangles; i++)
+        if (!isnan(plane->at[i / 3][i % 3][0])) low = MIN(low, plane->at[i / 3][i % 3][0]);
+    for (int32_t i = 0; i < 3 * triangles; i++) plane->at[i / 3][i % 3][0] -= low + plane->around_mm / 2;
+}
+
 static jali_status wrap_picture(jali_context *ctx, placing_work *w)
 {
     jali_status status;
     double at[3], around = w->surface->around_mm;
     if (!w->surface->uv) return flatten_picture(ctx, w);
-    if (around > 0 && w->size_mm[0] + 2 * w->ring_mm[0] > around) { // the zones on both sides become one
+    if (w->opt.around > 0) w->ring_mm[0] = 0;
+    if (w->opt.around == 0 && around > 0 &&
+        w->size_mm[0] + 2 * w->ring_mm[0] > around) { // the zones on both sides become one
         w->ring_mm[0] = (around - w->size_mm[0]) / 2;
         if (w->ring_mm[0] < w->opt.phi_s_mm / 2)
             return fail(
@@ -182,6 +194,7 @@ static jali_status wrap_picture(jali_context *ctx, placing_work *w)
     }
     if (w->surface->textured || w->opt.at_given) TRY(choose_place(ctx, w, at));
     TRY(lay_by_unrolling(ctx, w->surface, w->surface->textured || w->opt.at_given ? at : NULL, &w->plane));
+    if (w->opt.around > 0) turn_back(w->surface, &w->plane);
 done:
     return status;
 }
@@ -192,7 +205,9 @@ static jali_status choose_surface_grid(jali_context *ctx, placing_work *w, doubl
 {
     jali_status status;
     double margin = ceil(margin_mm(&w->opt) / pixel_mm) + 2;
-    double columns = w->opt.paper ? w->picture->width_px : MAX(floor(w->size_mm[0] / pixel_mm + 0.5), 1);
+    double parts = MAX(w->opt.around, 1);
+    double columns =
+        w->opt.paper ? w->picture->width_px : parts * MAX(floor(w->size_mm[0] / parts / pixel_mm + 0.5), 1);
     double rows = w->opt.paper ? w->picture->height_px
                                : MAX(floor(columns * w->picture->height_px / w->picture->width_px + 0.5), 1);
     TRY(check_grid(ctx, columns + 2 * margin, rows + 2 * margin, pixel_mm));
@@ -423,6 +438,32 @@ done:
     return status;
 }
 
+static jali_status check_around(jali_context *ctx, const jali_place_options *opt, const jali_surface *surface)
+{
+    if (opt->around == 0) return JALI_OK;
+    if (opt->around < 0)
+        return fail(ctx, JALI_BAD_VALUE, "a picture goes around in 1 part or more, not %d", opt->around);
+    if (opt->placing == JALI_PLACE_PROJECT || !surface->uv || !(surface->around_mm > 0))
+        return fail(
+            ctx, JALI_BAD_VALUE,
+            "a picture can go all around a cylinder, a sphere or a vase, wrapped; this surface does not "
+            "close where it is unrolled");
+    return JALI_OK;
+}
+
+// Left and right of a picture that goes around, what lies beyond.
+static void wrap_margin(const jali_chart *chart, jali_bitmap *drawing)
+{
+    int32_t margin = chart->margin_px, columns = chart->width_px - 2 * margin;
+    for (int32_t y = margin; y < chart->height_px - margin; y++)
+        for (int32_t i = 0; i < margin; i++) {
+            jali_bitmap_set(drawing, margin - 1 - i, y,
+                            jali_bitmap_get(drawing, margin + columns - 1 - i % columns, y));
+            jali_bitmap_set(drawing, margin + columns + i, y,
+                            jali_bitmap_get(drawing, margin + i % columns, y));
+        }
+}
+
 jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_t threshold,
                           const jali_place_options *given, const jali_surface *surface, jali_chart *chart,
                           jali_patch *patch, jali_bitmap *drawing, jali_placed *placed)
@@ -434,6 +475,7 @@ jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_
     *patch = (jali_patch){0};
     *drawing = (jali_bitmap){0};
     TRY(step(ctx, "place", 0));
+    TRY(check_around(ctx, &w.opt, surface));
     if (w.opt.frame_mm <= 0) w.opt.frame_mm = w.opt.phi_s_mm;   // the surroundings are solid in any case
     if (w.opt.camera.perspective && w.opt.camera.fov_deg > 0) { // the size follows when the view is known
         w.opt.width_mm = 1000;
@@ -450,6 +492,7 @@ jali_status jali_place_on(jali_context *ctx, const jali_picture *picture, int32_
     TRY(jali_bitmap_create(ctx, chart->width_px, chart->height_px, drawing));
     TRY(resample(ctx, w.picture, threshold, chart->margin_px, drawing));
     whiten_margin(chart, drawing);
+    if (w.opt.around > 0) wrap_margin(chart, drawing);
     *patch = w.grown.patch;
     w.grown.patch = (jali_patch){0};
     if (placed) *placed = w.placed;
