@@ -33,7 +33,7 @@ async function call(path, options = {}) {
 }
 
 export const lists = () => call("/lists").then((r) => r.json());
-export const sample = (name) => call(`/samples/${encodeURIComponent(name)}.png`).then((r) => r.blob());
+export const sample = (name, size = 1000) => call(`/samples/${encodeURIComponent(name)}.png?size=${size}`).then((r) => r.blob());
 
 export async function upload(blob, signal) {
     const response = await call("/uploads", {
@@ -41,6 +41,9 @@ export async function upload(blob, signal) {
     });
     return (await response.json()).id;
 }
+
+/** The bytes of an upload again. */
+export const uploaded = (id) => call(`/uploads/${id}`).then((r) => r.blob());
 
 export async function start(request, signal) {
     const response = await call("/jobs", {

@@ -2,17 +2,23 @@
 
 import { make } from "./dom.js";
 import { check, forget, group, menu, note, onUpdate, picker, slider, updateFields } from "./fields.js";
-import { MODELS, PICTURES, PROFILES } from "./files.js";
+import { MODELS, PICTURES, PROFILES, sampleUrl } from "./files.js";
 import { thresholdField } from "./levels.js";
 import { placingOf } from "./placing.js";
 import { vectorField } from "./placing-fields.js";
 import { change, profileOf, state } from "./state.js";
 import { text } from "./strings.js";
 
+function thumbnail(name) {
+    const image = make("img", { alt: "", width: 44, height: 44 });
+    sampleUrl(name).then((url) => { image.src = url; }, () => {}); // the name is there all the same
+    return image;
+}
+
 function gallery(lists) {
     const root = make("div", { class: "gallery", role: "group", "aria-label": text("samples") },
         lists.samples.map(({ name, what }) => make("button", { type: "button", title: what, "data-sample": name,
-            onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "" }) }, name)));
+            onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "" }) }, thumbnail(name), name)));
     onUpdate((s) => {
         for (const button of root.children) button.setAttribute("aria-pressed", String(button.dataset.sample === s.sample));
     });

@@ -8,8 +8,9 @@ import { text } from "./strings.js";
 export const PICTURES = "image/png,image/jpeg,image/webp,image/svg+xml,.pbm,.pgm,.ppm";
 export const PROFILES = ".json,.ini,.gcode";
 export const MODELS = ".stl,.obj,.ply,.off,.3mf";
-const SVG_PX = 2000;
+const SVG_PX = 2000, THUMBNAIL_PX = 88;
 const samples = new Map(); // name -> the promise of an upload's id
+const thumbnails = new Map(); // name -> the promise of a URL
 const greys = new Map(); // id of a picture -> the promise of an ImageBitmap
 
 const has = (list, name) => list.split(",").some((suffix) => name.toLowerCase().endsWith(suffix));
@@ -43,6 +44,12 @@ export async function taken(file) {
     if (has(MODELS, file.name)) return { surface: "mesh", mesh: await api.upload(file), meshName: file.name, at: "", dir: "" };
     const svg = file.type === "image/svg+xml" || has(".svg", file.name);
     return { sample: "", upload: await api.upload(svg ? await drawn(file) : file), uploadName: file.name, crop: "" };
+}
+
+/** A small sample to show in the gallery, as a URL. */
+export function sampleUrl(name) {
+    if (!thumbnails.has(name)) thumbnails.set(name, api.sample(name, THUMBNAIL_PX).then((blob) => URL.createObjectURL(blob)));
+    return thumbnails.get(name);
 }
 
 function sampleId(name) {

@@ -13,8 +13,10 @@ import { PictureView } from "./picture-view.js";
 import { showPlace } from "./placing-fields.js";
 import { Placing } from "./placing.js";
 import { Progress } from "./progress.js";
+import { isProject, opened, saved } from "./project.js";
 import { showResults } from "./results.js";
 import { Plan, bitmapOf, bytesOf, run } from "./runs.js";
+import { Smallest } from "./smallest.js";
 import { SolidView } from "./solid-view.js";
 import { canRedo, canUndo, change, commandLine, job, onChange, readAddress, redo, state, undo } from "./state.js";
 import { fillWords, language, setLanguage, text } from "./strings.js";
@@ -30,6 +32,7 @@ const crop = new Crop(stage, (part) => change({ crop: part }), (hadFocus) => { s
 const placing = new Placing(solidView, { skin, size: sizeNow, picture: () => pictureView.before, found: () => figures?.place?.centre_mm });
 const progress = new Progress($("progress"), cancel);
 const plan = new Plan(fail);
+const smallest = new Smallest(fail);
 
 let lists;
 let figures = null;
@@ -107,7 +110,7 @@ function cancel() {
 
 async function takeFile(file) {
     say("uploading");
-    change(await taken(file));
+    change(isProject(file.name) ? await opened(file) : await taken(file));
 }
 
 async function openCrop() {
@@ -135,7 +138,10 @@ function sizeNow() {
 // --- Results
 
 function showFigures() {
-    if (figures) showResults($("results"), figures, lists.materials, state().material, (name) => download(name).catch(fail));
+    if (!figures) return;
+    smallest.draw();
+    const density = lists.materials.find((m) => m.name === (figures.structure?.material.name ?? state().material))?.density_g_cm3 ?? 1.24;
+    showResults($("results"), figures, { density, smallest: smallest.root, download: (name) => download(name).catch(fail) });
 }
 
 // Files that were not made yet are made when they are wanted: the same request gives the same bytes.
@@ -145,14 +151,22 @@ async function fileOf(made, name) {
     return (await api.file(id, name)).blob();
 }
 
-async function download(name) {
-    const blob = await fileOf(last, name);
-    say("ready", { name: name.slice(name.lastIndexOf(".") + 1).toUpperCase() });
+function give(blob, name) {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(blob);
-    link.download = last.request.name.replace(/\.\w+$/, "") + name.slice(name.lastIndexOf("."));
+    link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    say("ready", { name });
+}
+
+async function download(name) {
+    give(await fileOf(last, name), last.request.name.replace(/\.\w+$/, "") + name.slice(name.lastIndexOf(".")));
+}
+
+async function save() {
+    const { blob, name } = await saved(state());
+    give(blob, name);
 }
 
 // --- The frame of it all
@@ -192,12 +206,16 @@ function listen() {
     $("undo").addEventListener("click", undo);
     $("redo").addEventListener("click", redo);
     addEventListener("keydown", (event) => {
-        if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=number]")) return;
-        if (event.key === "z") (event.shiftKey ? redo : undo)();
+        if (!(event.ctrlKey || event.metaKey)) return;
+        if (event.key !== "s" && event.target.matches("input[type=number]")) return;
+        if (event.key === "s") save().catch(fail);
+        else if (event.key === "z") (event.shiftKey ? redo : undo)();
         else if (event.key === "y") redo();
         else return;
         event.preventDefault();
     });
+    $("save").addEventListener("click", () => save().catch(fail));
+    $("open").addEventListener("change", () => { for (const file of $("open").files) takeFile(file).catch(fail); $("open").value = ""; });
     $("copy").addEventListener("click", async () => {
         await navigator.clipboard.writeText(commandLine((await pictureOf(state()))?.name ?? "picture.png"));
         say("copied");
@@ -212,6 +230,7 @@ function listen() {
     onChange(() => {
         updateFields();
         placing.refresh();
+        smallest.refresh().catch(fail);
         $("undo").disabled = !canUndo();
         $("redo").disabled = !canRedo();
         begin();

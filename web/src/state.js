@@ -62,17 +62,22 @@ function writeAddress() {
     history.replaceState(null, "", `${location.pathname}#${parts}`);
 }
 
-/** Take what the address says; values of the wrong kind are left out. */
-export function readAddress() {
-    const parts = new URLSearchParams(location.hash.slice(1));
+/** A whole state from values by name, as texts or not; those of the wrong kind or of no name are left out. */
+export function valuesFrom(given) {
     const values = {};
-    for (const [key, value] of parts) {
-        const kind = typeof DEFAULTS[key];
-        if (kind === "number" && Number.isFinite(Number(value))) values[key] = Number(value);
-        if (kind === "boolean") values[key] = value === "true";
-        if (kind === "string") values[key] = value;
+    for (const [key, standard] of Object.entries(DEFAULTS)) {
+        const value = Object.hasOwn(given, key) ? given[key] : null, kind = typeof standard;
+        if (value === null || typeof value === "object") continue;
+        if (kind === "number" && value !== "" && Number.isFinite(Number(value))) values[key] = Number(value);
+        if (kind === "boolean") values[key] = String(value) === "true";
+        if (kind === "string") values[key] = String(value);
     }
-    now = { ...DEFAULTS, ...values };
+    return { ...DEFAULTS, ...values };
+}
+
+/** Take what the address says. */
+export function readAddress() {
+    now = valuesFrom(Object.fromEntries(new URLSearchParams(location.hash.slice(1))));
 }
 
 const SHAPES = {
