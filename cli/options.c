@@ -46,6 +46,8 @@ static const option options[] = {
      "narrowest void that prints (the printer's; 0.5)"},
     {"pixel", "MM", NUMBER, GROUP_SIZE | GROUP_BOARD, FIELD(make.place.pixel_mm), 0.0001, 100, "mm",
      "working pixel (at least 8 a width, a whole number a phi-e / 2); of a board 0.05"},
+    {"grid", "N", WHOLE, GROUP_SIZE, FIELD(make.place.grid), 2, 64, 0,
+     "working pixels across the narrowest feature, at least; 4 is a quick preview (8)"},
     {"paper", NULL, FLAG, GROUP_SIZE, FIELD(make.optimise.paper), 0, 0, 0,
      "the paper's own method: input pixels, square elements, its roundings"},
 

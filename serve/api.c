@@ -114,16 +114,41 @@ static enum MHD_Result answer_events(server *s, struct MHD_Connection *connectio
     return known ? events_reply(s, connection, e->part[0]) : no_job(connection);
 }
 
+static blob *made_file(const task *t, const job_file *file)
+{
+    for (int32_t i = 0; i < t->file_count; i++)
+        if (t->file[i].file == file && t->file[i].complete) return t->file[i].bytes;
+    return NULL;
+}
+
+// Sleep until the file is there, the job has ended or is gone, or the time is up. Under the lock.
+static const task *wait_for_file(server *s, const char *id, const job_file *file)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_sec += WAIT_SECONDS;
+    for (;;) {
+        const task *t = s->closing ? NULL : jobs_find(s, id);
+        bool over = !t || t->state == JOB_DONE || t->state == JOB_FAILED || made_file(t, file);
+        if (over || pthread_cond_timedwait(&s->changed, &s->lock, &until) != 0) return t;
+    }
+}
+
 static enum MHD_Result answer_file(server *s, struct MHD_Connection *connection, exchange *e)
 {
     const job_file *file = job_file_named(e->part[1]);
-    blob *bytes = NULL;
+    bool wait = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "wait") != NULL;
+    char why[MOST_MESSAGE_BYTES] = "";
     pthread_mutex_lock(&s->lock);
-    const task *t = jobs_find(s, e->part[0]);
-    for (int32_t i = 0; t && i < t->file_count; i++)
-        if (t->file[i].file == file && t->file[i].complete) bytes = blob_hold(t->file[i].bytes);
+    const task *t = wait ? wait_for_file(s, e->part[0], file) : jobs_find(s, e->part[0]);
+    blob *bytes = t ? made_file(t, file) : NULL;
+    if (bytes) blob_hold(bytes);
+    bool going = t && (t->state == JOB_QUEUED || t->state == JOB_RUNNING);
+    if (wait && t && t->state == JOB_FAILED) snprintf(why, sizeof why, "%s", t->message);
     pthread_mutex_unlock(&s->lock);
     if (!t) return no_job(connection);
+    if (*why) return reply_error(connection, MHD_HTTP_CONFLICT, "%s", why);
+    if (!bytes && wait && going) return reply_json(connection, MHD_HTTP_ACCEPTED, json_object());
     if (!bytes) return reply_error(connection, MHD_HTTP_NOT_FOUND, "this job has made no file of that name");
     return reply_blob(connection, bytes, file->type);
 }

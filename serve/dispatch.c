@@ -1,8 +1,7 @@
 // The processes of jobs: started, fed, listened to, ended.
 //
-// How:     one loop over their pipes. As many run as --jobs says; one more waits ready, its libraries loaded
-// and
-//          its doors shut, so that a preview need not wait for that.
+// How:     one loop over their pipes. As many run as --jobs says; two more wait ready, their libraries loaded
+//          and their doors shut, so that a preview need not wait for that, nor a preview right after another.
 // Checked: tests/test_serve.c: kill -9, crashes, lies, time, 50 at once.
 #include "dispatch.h"
 #include "child.h"
@@ -18,13 +17,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_CHILDREN = 64, TICK_MS = 500 };
+enum { MOST_CHILDREN = 64, SPARE = 2, TICK_MS = 500 };
 
 typedef struct crew {
     server *s;
     int32_t most;
-    child each[MOST_CHILDREN + 1];    // [most + 1]
-    char verdict[MOST_MESSAGE_BYTES]; // why the one looked at has to end
+    child each[MOST_CHILDREN + SPARE]; // [most + SPARE]
+    bool renew;                        // jobs have begun or ended since processes were made ready
+    char verdict[MOST_MESSAGE_BYTES];  // why the one looked at has to end
     int verdict_exit;
 } crew;
 
@@ -107,6 +107,7 @@ static void dismiss(crew *c, child *of)
 {
     char id[TOKEN_BYTES];
     memcpy(id, of->job, TOKEN_BYTES);
+    c->renew |= *id != 0;
     int state = child_end(of);
     if (c->verdict_exit < 0) explain_end(c, state);
     pthread_mutex_lock(&c->s->lock);
@@ -119,7 +120,7 @@ static void dismiss(crew *c, child *of)
 // Processes whose job was cancelled, or has taken too long.
 static void end_overdue(crew *c)
 {
-    for (int32_t i = 0; i <= c->most; i++) {
+    for (int32_t i = 0; i < c->most + SPARE; i++) {
         child *of = &c->each[i];
         char words[MOST_MESSAGE_BYTES];
         if (of->pid == 0 || !*of->job) continue;
@@ -139,7 +140,7 @@ static child *ready_child(crew *c)
 {
     child *place = NULL;
     int32_t working = 0;
-    for (int32_t i = 0; i <= c->most; i++) {
+    for (int32_t i = 0; i < c->most + SPARE; i++) {
         child *of = &c->each[i];
         if (of->pid != 0 && *of->job)
             working++;
@@ -158,7 +159,6 @@ static bool has_gone(const child *of)
 
 static void give_jobs(crew *c)
 {
-    bool given = false;
     for (child *of; (of = ready_child(c));) {
         char words[MOST_MESSAGE_BYTES];
         if (has_gone(of)) child_end(of);
@@ -172,16 +172,27 @@ static void give_jobs(crew *c)
             t->state = JOB_RUNNING;
             t->started_at = seconds_now();
             jobs_progress(c->s, t, "start", 0);
-            given = true;
+            c->renew = true;
         }
         pthread_mutex_unlock(&c->s->lock);
         if (!t) break;
     }
-    for (int32_t i = 0; i <= c->most && given; i++)
-        if (c->each[i].pid == 0) {
-            (void)!child_start(&c->each[i], c->s->set);
-            given = false;
-        }
+}
+
+// Those that wait ready anew, after jobs have begun or ended: never in a loop on ones that end at once. One
+// while jobs run, which need the processors themselves, the rest when there is peace.
+static void renew_ready(crew *c)
+{
+    int32_t working = 0, ready = 0;
+    if (!c->renew) return;
+    for (int32_t i = 0; i < c->most + SPARE; i++) {
+        working += c->each[i].pid != 0 && *c->each[i].job;
+        ready += c->each[i].pid != 0 && !*c->each[i].job;
+    }
+    int32_t wanted = working > 0 ? 1 : SPARE;
+    for (int32_t i = 0; i < c->most + SPARE && ready < wanted; i++)
+        if (c->each[i].pid == 0) ready += child_start(&c->each[i], c->s->set);
+    c->renew = false;
 }
 
 static void hear(crew *c, child *of, short events)
@@ -199,12 +210,12 @@ static void hear(crew *c, child *of, short events)
 
 static void wait_and_hear(crew *c)
 {
-    struct pollfd watched[2 * (MOST_CHILDREN + 1) + 1];
-    child *whose[2 * (MOST_CHILDREN + 1) + 1];
+    struct pollfd watched[2 * (MOST_CHILDREN + SPARE) + 1];
+    child *whose[2 * (MOST_CHILDREN + SPARE) + 1];
     nfds_t count = 0;
     uint64_t woken;
     watched[count++] = (struct pollfd){.fd = c->s->wake, .events = POLLIN};
-    for (int32_t i = 0; i <= c->most; i++) {
+    for (int32_t i = 0; i < c->most + SPARE; i++) {
         child *of = &c->each[i];
         if (of->pid == 0) continue;
         whose[count] = of;
@@ -232,14 +243,15 @@ jali_status dispatch(jali_context *ctx, server *s)
     jali_status status;
     crew c = {.s = s, .most = s->set->jobs};
     if (c.most == 0) c.most = (int32_t)MIN(MAX(sysconf(_SC_NPROCESSORS_ONLN), 1), MOST_CHILDREN);
-    (void)!child_start(&c.each[0], s->set);
+    for (int32_t i = 0; i < SPARE; i++) (void)!child_start(&c.each[i], s->set);
     while (!stopping(ctx)) {
         end_overdue(&c);
         give_jobs(&c);
+        renew_ready(&c);
         wait_and_hear(&c);
         patience_tick(s);
     }
-    for (int32_t i = 0; i <= c.most; i++)
+    for (int32_t i = 0; i < c.most + SPARE; i++)
         if (c.each[i].pid != 0) child_end(&c.each[i]);
     status = step(ctx, "serve", 1);
     return status == JALI_CANCELLED ? JALI_OK : status;

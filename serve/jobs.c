@@ -149,6 +149,7 @@ bool jobs_take(server *s, task *t, const char *name, const void *data, size_t si
     if (!f->bytes) return false;
     blob_fit(f->bytes);
     f->complete = true;
+    server_changed(s);
     return true;
 }
 

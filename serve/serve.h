@@ -34,6 +34,7 @@ enum {
     HEADER_SECONDS = SMALL ? 2 : 20, // to send a request's head
     BODY_SECONDS = SMALL ? 2 : 20,   // to send its body, and
     BODY_BYTES_A_SECOND = 1 << 20,   // a second more for so many bytes
+    WAIT_SECONDS = 20,               // for a file that is not made yet
     HEARTBEAT_SECONDS = 5,           // of a stream of events without events
 };
 

@@ -185,6 +185,24 @@ static void refused(const jali_picture *p, jali_place_options opt, jali_status w
     CHECK(strstr(jali_message(ctx), words) && drawing.word == NULL && chart.width_px == 0);
 }
 
+// phi_s 0.3, phi_v 0.5, phi_e / 2 = 0.05: the largest divisor of the growth of which 0.3 mm hold enough.
+TEST(a_coarser_grid_keeps_the_growth_whole)
+{
+    static const struct {
+        int32_t grid;
+        double pixel_mm;
+    } cases[] = {{0, 0.025}, {8, 0.025}, {4, 0.05}, {2, 0.15}, {13, 0.05 / 3}};
+    jali_picture p = random_picture(5, 64, 64, true);
+    for (int i = 0; i < 5; i++) {
+        jali_place_options opt = jali_place_defaults();
+        opt.grid = cases[i].grid;
+        CHECK_OK(jali_place(ctx, &p, 128, &opt, &chart, &drawing));
+        CHECK(fabs(jali_chart_pixel_mm(&chart) - cases[i].pixel_mm) < 0.005 * cases[i].pixel_mm);
+        jali_bitmap_free(ctx, &drawing);
+    }
+    jali_picture_free(ctx, &p);
+}
+
 TEST(impossible_sizes_are_sentences)
 {
     jali_picture p = random_picture(4, 100, 50, true);
@@ -201,6 +219,7 @@ TEST(impossible_sizes_are_sentences)
     REFUSED(opt.frame_mm = -1, JALI_BAD_VALUE, "frame");
     REFUSED(opt.width_mm = 1, JALI_NO_RESULT, "narrowest feature");
     REFUSED(opt.pixel_mm = 1e-5, JALI_NO_RESULT, "coarser");
+    REFUSED(opt.grid = 1, JALI_BAD_VALUE, "2 .. 64");
     jali_picture flat = random_picture(4, 1000, 2, true);
     opt = jali_place_defaults();
     opt.width_mm = 9000;
@@ -265,6 +284,7 @@ int main(void)
         CASE(bits_beyond_the_width_are_zero),
         CASE(a_straight_edge_keeps_its_place),
         CASE(paper_keeps_the_input_pixels),
+        CASE(a_coarser_grid_keeps_the_growth_whole),
         CASE(input_pixels_are_found_at_any_fineness),
         CASE(the_lattice_holds_every_coordinate_in_float32),
         CASE(impossible_sizes_are_sentences),

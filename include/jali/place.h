@@ -32,8 +32,10 @@ typedef struct jali_place_options {
         height_mm;   // size of the picture; 0 = from the other one by the picture's shape. Both
                      // may be given when they agree with it to 1 %. At least one is needed, or fov_deg
     double pixel_mm; // working pixel; 0 (default) = the coarsest of which the smaller of phi_s and
-                     // phi_v holds at least 8 (4 across the steepest stretch of a surface) and phi_e / 2 a
-                     // whole number
+                     // phi_v holds at least `grid` (half across the steepest stretch of a surface) and phi_e
+                     // / 2 a whole number
+    int32_t grid;    // so many working pixels across the narrowest feature, 2 .. 64, where pixel_mm is 0; 0
+                     // (default) = 8, 4 is a quick preview
     double phi_e_mm; // what the printer adds to a solid edge's two sides together; < 0: takes away (0.1)
     double phi_s_mm, phi_v_mm; // narrowest solid and narrowest void that print, > 0 (0.3, 0.5)
     double frame_mm;           // width of the solid frame, >= 0; 0 = the picture's border is the plate's

@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-static const double px_a_feature = 8;
-static const double px_where_stretched = 4; // across, where the surface is stretched most (docs/metric.md)
+static const int32_t px_a_feature = 8; // and half of it where the surface is stretched most (docs/metric.md)
 static const double largest_mm = 10000;
 enum { MOST_SIDE_PX = 1 << 20 };
 static const int64_t most_px = INT64_C(1) << 32;
@@ -30,6 +29,9 @@ static jali_status check_options(jali_context *ctx, const jali_place_options *op
     TRY(check_mm(ctx, "phi_s", opt->phi_s_mm, false));
     TRY(check_mm(ctx, "phi_v", opt->phi_v_mm, false));
     TRY(check_mm(ctx, "the frame", opt->frame_mm, true));
+    if (opt->grid != 0 && (opt->grid < 2 || opt->grid > 64))
+        TRY(fail(ctx, JALI_BAD_VALUE, "the pixels across the narrowest feature must be 2 .. 64, not %d",
+                 opt->grid));
     if (opt->width_mm == 0 && opt->height_mm == 0)
         status = fail(ctx, JALI_BAD_VALUE, "the picture needs a width or a height in mm");
 done:
@@ -72,13 +74,14 @@ jali_status picture_size(jali_context *ctx, const jali_picture *picture, const j
     return JALI_OK;
 }
 
-// The coarsest pixel of which the smaller width holds at least 8 and the growth of an edge, phi_e / 2, a
-// whole number: then the compensation is exact. A growth so small that this needs more than 16 a width is
+// The coarsest pixel of which the smaller width holds enough and the growth of an edge, phi_e / 2, a
+// whole number: then the compensation is exact. A growth so small that this needs more than twice as many is
 // rounded.
 double automatic_pixel(const jali_place_options *opt, double most_stretch)
 {
     double width_mm = MIN(opt->phi_s_mm, opt->phi_v_mm), growth_mm = fabs(opt->phi_e_mm) / 2;
-    double coarsest = width_mm / MAX(px_a_feature, px_where_stretched * most_stretch);
+    double across = opt->grid > 0 ? opt->grid : px_a_feature;
+    double coarsest = width_mm / MAX(across, across / 2 * most_stretch);
     double fitting = growth_mm > 0 ? growth_mm / ceil(growth_mm / coarsest - 1e-9) : 0;
     return fitting >= coarsest / 2 ? fitting : coarsest;
 }

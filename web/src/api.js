@@ -55,6 +55,14 @@ export async function start(request, signal) {
 export const stop = (id) => call(`/jobs/${id}`, { method: "DELETE" }).catch(() => {});
 export const file = (id, name, signal) => call(`/jobs/${id}/files/${name}`, { signal });
 
+/** The same as soon as it is made. */
+export async function fileWhenMade(id, name, signal) {
+    for (;;) {
+        const response = await call(`/jobs/${id}/files/${name}?wait=1`, { signal });
+        if (response.status !== 202) return response;
+    }
+}
+
 /** Read a job's server-sent events until it ends; EventSource could not carry the token. */
 export async function* events(id, signal) {
     const response = await call(`/jobs/${id}/events`, { signal });

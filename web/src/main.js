@@ -14,6 +14,7 @@ import { showPlace } from "./placing-fields.js";
 import { Placing } from "./placing.js";
 import { Progress } from "./progress.js";
 import { isProject, opened, saved } from "./project.js";
+import { preview } from "./preview.js";
 import { showResults } from "./results.js";
 import { Plan, bitmapOf, bytesOf, run } from "./runs.js";
 import { Smallest } from "./smallest.js";
@@ -22,7 +23,7 @@ import { canRedo, canUndo, change, commandLine, job, onChange, readAddress, redo
 import { fillWords, language, setLanguage, text } from "./strings.js";
 
 const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
-const LEVELS_AFTER_MS = 10, PREVIEW_AFTER_MS = 40, WHOLE_AFTER_MS = 350;
+const PREVIEW_AFTER_MS = 25, LEVELS_AFTER_MS = 60, WHOLE_AFTER_MS = 350;
 const $ = (id) => document.getElementById(id);
 
 const stage = $("stage");
@@ -57,14 +58,11 @@ async function showPictures(id, signal, errors) {
     pictureView.show({ input, mask, wrong });
 }
 
-// Without what a picture alone does not depend on.
-async function preview(signal) {
-    const picture = await pictureOf(state());
-    const request = job(picture);
-    for (const key of ["force", "material", "nudge", "thickness"]) delete request.options[key];
-    Object.assign(request, { verb: "adapt", files: ["input.png", "mask.png"] });
-    request.options["no-predict"] = "true";
-    await showPictures(await run(request, "preview", signal), signal, false);
+async function first(signal) {
+    const pictures = await preview(state(), signal);
+    if (!pictures || signal.aborted) return;
+    pictureView.show(pictures, true);
+    performance.mark("preview:drawn");
 }
 
 async function whole(signal) {
@@ -99,7 +97,7 @@ function begin() {
     if (!state().sample && !state().upload) return say("waiting");
     say("working");
     progress.show();
-    plan.begin([[levels, LEVELS_AFTER_MS], [preview, PREVIEW_AFTER_MS], [whole, WHOLE_AFTER_MS]]);
+    plan.begin([[first, PREVIEW_AFTER_MS], [levels, LEVELS_AFTER_MS], [whole, WHOLE_AFTER_MS]]);
 }
 
 function cancel() {

@@ -1,34 +1,12 @@
 // Before and after on one canvas, with a handle between them, overlays, zoom and pan.
 
+import { bytesOf, changed, given, plain } from "./compose.js";
 import { make } from "./dom.js";
 import { text } from "./strings.js";
 
 const SOLID = [239, 233, 223], VOID = [39, 38, 44], MISSING = [214, 69, 48], EXCESS = [250, 204, 40],
     ADDED = [42, 120, 180], OPENED = [200, 90, 160];
 const MOST_PX = 1600; // longer side of what is composed; the carving itself is finer
-
-const bits = (bitmap, width, height) => {
-    const canvas = new OffscreenCanvas(width, height);
-    const context = canvas.getContext("2d", { willReadFrequently: true });
-    context.imageSmoothingEnabled = bitmap.width > width;
-    context.drawImage(bitmap, 0, 0, width, height);
-    return context.getImageData(0, 0, width, height);
-};
-
-// A coloured picture from one or two that are black and white.
-function compose(width, height, colour) {
-    const canvas = new OffscreenCanvas(width, height);
-    const image = new ImageData(width, height);
-    for (let i = 0, p = 0; i < width * height; i++, p += 4) {
-        const [r, g, b] = colour(p);
-        image.data[p] = r;
-        image.data[p + 1] = g;
-        image.data[p + 2] = b;
-        image.data[p + 3] = 255;
-    }
-    canvas.getContext("2d").putImageData(image, 0, 0);
-    return canvas;
-}
 
 export class PictureView {
     constructor(stage, legend, bar) {
@@ -115,27 +93,24 @@ export class PictureView {
         this.draw();
     }
 
-    /** Show a run's pictures: ImageBitmaps of the same area; `wrong`, coloured, may be missing. */
-    show({ input, mask, wrong }) {
-        const shrink = Math.min(1, MOST_PX / Math.max(mask.width, mask.height));
+    /** Show a run's pictures: ImageBitmaps of the same area; `wrong`, coloured, may be missing. `quick`: as many pixels as
+     *  are seen now, for what will be shown anew soon. */
+    show({ input, mask, wrong }, quick = false) {
+        const seen = Math.max(this.root.clientWidth, this.root.clientHeight) * (devicePixelRatio || 1) * Math.max(this.view.scale, 1);
+        const most = quick && seen > 0 ? Math.min(MOST_PX, seen) : MOST_PX, shrink = Math.min(1, most / Math.max(mask.width, mask.height));
         const width = Math.max(1, Math.round(mask.width * shrink)), height = Math.max(1, Math.round(mask.height * shrink));
-        this.layers = { width, height, input: bits(input, width, height).data, mask: bits(mask, width, height).data,
-            wrong: wrong ? bits(wrong, width, height).data : null };
-        this.paint();
+        const was = this.layers, same = was && was.bitmap === input && was.width === width && was.height === height;
+        this.layers = { width, height, bitmap: input, input: same ? was.input : bytesOf(input, width, height), mask: bytesOf(mask, width, height),
+            wrong: wrong ? bytesOf(wrong, width, height, true) : null };
+        this.paint(same);
     }
 
-    paint() {
+    paint(sameInput = false) {
         if (!this.layers) return;
         const { width, height, input, mask, wrong } = this.layers;
-        const plain = (data) => (p) => (data[p] > 127 ? SOLID : VOID);
-        const coloured = (p) => [wrong[p], wrong[p + 1], wrong[p + 2]];
-        const changed = (p) => {
-            const was = input[p] > 127, is = mask[p] > 127;
-            return was === is ? (is ? SOLID : VOID) : is ? ADDED : OPENED;
-        };
-        const after = { none: plain(mask), error: wrong ? coloured : plain(mask), change: changed }[this.overlay];
-        this.before = compose(width, height, plain(input));
-        this.after = compose(width, height, after);
+        if (!sameInput) this.before = plain(width, height, input, VOID, SOLID);
+        this.after = this.overlay === "change" ? changed(width, height, input, mask, VOID, SOLID, ADDED, OPENED)
+            : this.overlay === "error" && wrong ? given(width, height, wrong) : plain(width, height, mask, VOID, SOLID);
         this.showLegend();
         this.draw();
     }

@@ -4,24 +4,35 @@ import * as api from "./api.js";
 
 const client = crypto.randomUUID(); // this page, to the server: of each of its kinds of jobs the newest counts
 
-/** Run a job to its end and give its id; tell(stage, fraction) hears how far it is.
- *  One that is aborted ends on the server, too. */
-export async function run(request, kind, signal, tell = () => {}) {
+// Start a job and see to `work(id)`; one that is aborted meanwhile ends on the server, too.
+async function during(request, kind, signal, work) {
     const id = await api.start({ ...request, client: `${client}-${kind}` });
     const stop = () => api.stop(id);
     if (signal?.aborted) stop();
     signal?.throwIfAborted();
     signal?.addEventListener("abort", stop, { once: true });
     try {
+        return await work(id);
+    } finally {
+        signal?.removeEventListener("abort", stop);
+    }
+}
+
+/** Run a job to its end and give its id; tell(stage, fraction) hears how far it is. */
+export function run(request, kind, signal, tell = () => {}) {
+    return during(request, kind, signal, async (id) => {
         for await (const event of api.events(id, signal)) {
             if (event.type === "progress") tell(event.stage, event.fraction);
             if (event.type === "done") return id;
             if (event.type === "failed") throw new api.Refusal(event.message);
         }
         throw new TypeError("the events ended early");
-    } finally {
-        signal?.removeEventListener("abort", stop);
-    }
+    });
+}
+
+/** Run a job for its files alone: their responses, each as soon as it is made. */
+export function filesOf(request, kind, signal) {
+    return during(request, kind, signal, (id) => Promise.all(request.files.map((name) => api.fileWhenMade(id, name, signal))));
 }
 
 /** One file of a job, as an ImageBitmap. */
