@@ -138,17 +138,14 @@ static enum MHD_Result answer_file(server *s, struct MHD_Connection *connection,
 {
     const job_file *file = job_file_named(e->part[1]);
     bool wait = MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, "wait") != NULL;
-    char why[MOST_MESSAGE_BYTES] = "";
     pthread_mutex_lock(&s->lock);
     const task *t = wait ? wait_for_file(s, e->part[0], file) : jobs_find(s, e->part[0]);
     blob *bytes = t ? made_file(t, file) : NULL;
+    json_t *state = wait && t && !bytes && t->state != JOB_DONE ? job_json(s, t) : NULL;
     if (bytes) blob_hold(bytes);
-    bool going = t && (t->state == JOB_QUEUED || t->state == JOB_RUNNING);
-    if (wait && t && t->state == JOB_FAILED) snprintf(why, sizeof why, "%s", t->message);
     pthread_mutex_unlock(&s->lock);
     if (!t) return no_job(connection);
-    if (*why) return reply_error(connection, MHD_HTTP_CONFLICT, "%s", why);
-    if (!bytes && wait && going) return reply_json(connection, MHD_HTTP_ACCEPTED, json_object());
+    if (state) return reply_json(connection, MHD_HTTP_ACCEPTED, state);
     if (!bytes) return reply_error(connection, MHD_HTTP_NOT_FOUND, "this job has made no file of that name");
     return reply_blob(connection, bytes, file->type);
 }

@@ -202,8 +202,8 @@ TEST(a_file_is_waited_for)
     reply_free(&r);
     start_job(&page, "\"verb\": \"adapt\", \"options\": {\"width\": -1}, \"files\": [\"mask.png\"]", id);
     r = about_job(&page, "GET", id, "/files/mask.png?wait=1");
-    CHECK_INT(r.status, 409);
-    CHECK(strstr(r.body, "width"));
+    CHECK_INT(r.status, 202);
+    CHECK(strstr(r.body, "\"failed\"") && strstr(r.body, "width"));
     reply_free(&r);
     r = about_job(&page, "GET", "0123456789abcdef0123456789abcdef", "/files/mask.png?wait=1");
     CHECK_INT(r.status, 404);

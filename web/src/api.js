@@ -60,6 +60,8 @@ export async function fileWhenMade(id, name, signal) {
     for (;;) {
         const response = await call(`/jobs/${id}/files/${name}?wait=1`, { signal });
         if (response.status !== 202) return response;
+        const { state, message } = await response.json();
+        if (state === "failed") throw new Refusal(message);
     }
 }
 
