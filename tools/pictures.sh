@@ -23,3 +23,7 @@ for light in "" --lamp; do
     "$jali" render "$work/vase.stl" $light --view 0,1,-0.3 --size 560 --quiet --force-overwrite \
         -o "$out/vase${light#-}.png"
 done
+# The page, where there is a browser to draw it.
+if [ -d web/node_modules/playwright-core ] && CHROMIUM=$(command -v chromium); then
+    CHROMIUM=$CHROMIUM node web/picture.mjs "$jali" "$out/page.png"
+fi
