@@ -27,12 +27,24 @@ export function plain(width, height, bytes, dark, light) {
     return canvasOf(width, height, image);
 }
 
-/** What two pictures have in common in the two colours, what was made solid in `added`, what was opened in `opened`. */
-export function changed(width, height, was, is, dark, light, added, opened) {
-    const image = new ImageData(width, height), out = new Uint32Array(image.data.buffer);
-    const colour = [opaque(dark), opaque(added), opaque(opened), opaque(light)]; // by was * 2 + is
-    for (let i = 0; i < out.length; i++) out[i] = colour[((was[i] >> 7) << 1) | (is[i] >> 7)];
+/** A picture by a table: colours[i], where the bits of i are the tones of the layers, the first one highest. */
+export function tabled(width, height, layers, colours) {
+    const image = new ImageData(width, height), out = new Uint32Array(image.data.buffer), table = colours.map(opaque);
+    for (let i = 0; i < out.length; i++) {
+        let row = 0;
+        for (const layer of layers) row = (row << 1) | (layer[i] >> 7);
+        out[i] = table[row];
+    }
     return canvasOf(width, height, image);
+}
+
+/** As bytesOf, what is white made so many pixels wider to each side: fine lines are seen from afar. */
+export function marksOf(bitmap, width, height, reach) {
+    const canvas = new OffscreenCanvas(width, height), context = canvas.getContext("2d");
+    context.globalCompositeOperation = "lighten";
+    context.imageSmoothingEnabled = reach === 0;
+    for (let y = -reach; y <= reach; y++) for (let x = -reach; x <= reach; x++) context.drawImage(bitmap, x, y, width, height);
+    return bytesOf(canvas, width, height);
 }
 
 /** A picture that has its colours already, as bytesOf gave them. */

@@ -79,16 +79,16 @@ function printerGroup(lists, take) {
 }
 
 function surfaceGroup(take) {
-    const round_ = (s) => s.surface !== "plate" && s.surface !== "mesh", mesh = (s) => s.surface === "mesh", curved = (s) => s.surface !== "plate";
+    const mesh = (s) => s.surface === "mesh", model = (s) => mesh(s) && s.mesh !== "", round_ = (s) => s.surface !== "plate" && !mesh(s), curved = (s) => round_(s) || model(s);
     return group("surface",
         menu("surface", "surface", ["plate", "cylinder", "vase", "cone", "sphere", "mesh"].map((name) => [name, text(name)])),
         note((s) => (s.mesh ? s.meshName : text("noMesh")), mesh),
         make("div", { class: "tool-row" }, picker("chooseMesh", MODELS, take)),
         slider("radius", "radius", { min: 10, max: 150, step: 1, unit: "mm", show: round_ }),
         slider("height", "height", { min: 20, max: 400, step: 5, unit: "mm", show: (s) => round_(s) && s.surface !== "sphere" }),
-        slider("meshHeight", "meshHeight", { min: 0, max: 400, step: 1, unit: "mm", show: mesh }),
-        slider("meshTurn", "meshTurn", { min: -180, max: 180, step: 1, unit: "degree", show: mesh }),
-        menu("meshUp", "meshUp", ["z", "y", "x", "-z", "-y", "-x"].map((axis) => [axis, axis]), { show: mesh }),
+        slider("meshHeight", "meshHeight", { min: 0, max: 400, step: 1, unit: "mm", show: model }),
+        slider("meshTurn", "meshTurn", { min: -180, max: 180, step: 1, unit: "degree", show: model }),
+        menu("meshUp", "meshUp", ["z", "y", "x", "-z", "-y", "-x"].map((axis) => [axis, axis]), { show: model }),
         menu("place", "place", ["auto", "project", "wrap"].map((way) => [way, text(`place_${way}`)]), { show: curved }),
         vectorField("at", "at", { step: 1, show: curved, hint: "atHint" }),
         vectorField("dir", "dir", { step: 0.1, show: (s) => curved(s) && placingOf(s) === "project" }));

@@ -22,7 +22,7 @@ import { SolidView } from "./solid-view.js";
 import { canRedo, canUndo, change, commandLine, job, onChange, readAddress, redo, state, undo } from "./state.js";
 import { fillWords, language, setLanguage, text } from "./strings.js";
 
-const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
+const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "bridges.png", "lost.png", "conflicts.png", "print.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
 const PREVIEW_AFTER_MS = 25, LEVELS_AFTER_MS = 60, WHOLE_AFTER_MS = 350;
 const $ = (id) => document.getElementById(id);
 
@@ -52,10 +52,9 @@ function fail(error) {
 
 // --- Runs
 
-async function showPictures(id, signal, errors) {
-    const names = ["input.png", "mask.png", ...(errors ? ["errors.png"] : [])];
-    const [input, mask, wrong] = await Promise.all(names.map((name) => bitmapOf(id, name, signal)));
-    pictureView.show({ input, mask, wrong });
+async function showPictures(id, signal) {
+    const [input, mask] = await Promise.all(["input.png", "mask.png"].map((name) => bitmapOf(id, name, signal)));
+    pictureView.show({ input, mask, layer: (name) => bitmapOf(id, name) });
 }
 
 async function first(signal) {
@@ -79,7 +78,7 @@ async function whole(signal) {
     showFigures();
     progress.hide();
     say("done", { seconds: figures.seconds.total.toFixed(2) });
-    await showPictures(id, signal, true);
+    await showPictures(id, signal);
     solidView.show(await bytesOf(id, "mesh.bin", signal), { flat, thickness, structure: figures.structure });
 }
 

@@ -1,19 +1,19 @@
 // Before and after on one canvas, with a handle between them, overlays, zoom and pan.
 
-import { bytesOf, changed, given, plain } from "./compose.js";
+import { bytesOf, plain } from "./compose.js";
 import { make } from "./dom.js";
+import { OVERLAYS, SOLID, VOID } from "./overlays.js";
 import { text } from "./strings.js";
 
-const SOLID = [239, 233, 223], VOID = [39, 38, 44], MISSING = [214, 69, 48], EXCESS = [250, 204, 40],
-    ADDED = [42, 120, 180], OPENED = [200, 90, 160];
 const MOST_PX = 1600; // longer side of what is composed; the carving itself is finer
 
 export class PictureView {
     constructor(stage, legend, bar) {
         this.legend = legend;
         this.split = 0.5;
-        this.overlay = "none";
-        this.layers = null; // input, mask, wrong as bytes
+        this.overlay = OVERLAYS[0];
+        this.layers = null; // width, height, and input and mask as bytes
+        this.layer = null; // gives other files of the whole run that is shown
         this.view = { scale: 1, x: 0, y: 0 };
         this.canvas = make("canvas", { class: "picture" });
         this.handle = make("input", { type: "range", class: "handle", min: 0, max: 100, value: 50, step: 1, "aria-label": text("handle") });
@@ -29,9 +29,8 @@ export class PictureView {
     words() {
         this.handle.setAttribute("aria-label", text("handle"));
         this.chooser.setAttribute("aria-label", text("overlay"));
-        this.chooser.replaceChildren(...[["none", "overlayNone"], ["error", "overlayError"], ["change", "overlayBridge"]]
-            .map(([value, key]) => make("option", { value }, text(key))));
-        this.chooser.value = this.overlay;
+        this.chooser.replaceChildren(...OVERLAYS.map(({ name, words }) => make("option", { value: name }, text(words))));
+        this.chooser.value = this.overlay.name;
         this.showLegend();
     }
 
@@ -41,7 +40,7 @@ export class PictureView {
             const place = { 1: 1, 2: 0.5, 3: 0 }[event.key];
             if (place !== undefined) this.setSplit(place);
         });
-        this.chooser.addEventListener("change", () => { this.overlay = this.chooser.value; this.paint(); });
+        this.chooser.addEventListener("change", () => { this.overlay = OVERLAYS.find(({ name }) => name === this.chooser.value); this.paint(true); });
         this.canvas.addEventListener("wheel", (event) => {
             event.preventDefault();
             this.zoom(Math.exp(-event.deltaY * 0.0015), event.offsetX, event.offsetY);
@@ -93,31 +92,40 @@ export class PictureView {
         this.draw();
     }
 
-    /** Show a run's pictures: ImageBitmaps of the same area; `wrong`, coloured, may be missing. `quick`: as many pixels as
-     *  are seen now, for what will be shown anew soon. */
-    show({ input, mask, wrong }, quick = false) {
+    /** Show a run's pictures: ImageBitmaps of the same area. layer(name) gives further files of a whole run; null: there are none yet.
+     *  `quick`: as many pixels as are seen now, for what will be shown anew soon. */
+    show({ input, mask, layer = null }, quick = false) {
         const seen = Math.max(this.root.clientWidth, this.root.clientHeight) * (devicePixelRatio || 1) * Math.max(this.view.scale, 1);
         const most = quick && seen > 0 ? Math.min(MOST_PX, seen) : MOST_PX, shrink = Math.min(1, most / Math.max(mask.width, mask.height));
         const width = Math.max(1, Math.round(mask.width * shrink)), height = Math.max(1, Math.round(mask.height * shrink));
         const was = this.layers, same = was && was.bitmap === input && was.width === width && was.height === height;
-        this.layers = { width, height, bitmap: input, input: same ? was.input : bytesOf(input, width, height), mask: bytesOf(mask, width, height),
-            wrong: wrong ? bytesOf(wrong, width, height, true) : null };
+        this.layers = { width, height, bitmap: input, input: same ? was.input : bytesOf(input, width, height), mask: bytesOf(mask, width, height) };
+        this.layer = layer;
+        this.after = null;
         this.paint(same);
     }
 
     paint(sameInput = false) {
         if (!this.layers) return;
-        const { width, height, input, mask, wrong } = this.layers;
+        const { layers, overlay, layer } = this, { width, height, input, mask } = layers;
         if (!sameInput) this.before = plain(width, height, input, VOID, SOLID);
-        this.after = this.overlay === "change" ? changed(width, height, input, mask, VOID, SOLID, ADDED, OPENED)
-            : this.overlay === "error" && wrong ? given(width, height, wrong) : plain(width, height, mask, VOID, SOLID);
+        if (!overlay.paint || !layer || !this.after) this.after = overlay.quick?.(layers) ?? plain(width, height, mask, VOID, SOLID);
         this.showLegend();
+        this.draw();
+        if (overlay.paint && layer) this.finish(layers, overlay, layer);
+    }
+
+    // What needs files comes when they are there, unless something else is wanted by then.
+    async finish(layers, overlay, layer) {
+        const after = await overlay.paint(layers, layer).catch(() => null); // a run that is over: the next one paints
+        if (!after || layers !== this.layers || overlay !== this.overlay) return;
+        this.after = after;
+        this.chooser.dataset.shows = overlay.name;
         this.draw();
     }
 
     showLegend() {
-        const keys = { none: [], error: [["missing", MISSING], ["excess", EXCESS]], change: [["bridge", ADDED], ["opened", OPENED]] }[this.overlay];
-        this.legend.replaceChildren(...keys.map(([key, colour]) => {
+        this.legend.replaceChildren(...this.overlay.keys.map(([key, colour]) => {
             const patch = make("span", { class: "patch", "aria-hidden": "true" });
             patch.style.background = `rgb(${colour})`;
             return make("span", { class: "key" }, patch, text(key));

@@ -34,3 +34,35 @@ test("what a load that is too large would need is said", async () => {
     await done();
     assert.match(await t.page.textContent(".promises"), /Strong enough: not asked.*press on it with a force to know/);
 });
+
+// The colours on the stage, as shares of its pixels, right of the handle and inside the picture.
+const share = (colour) => t.page.evaluate(([r, g, b]) => {
+    const canvas = document.querySelector("canvas.picture"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let p = 0; p < data.length; p += 4) count += data[p] === r && data[p + 1] === g && data[p + 2] === b;
+    return count / (data.length / 4);
+}, colour);
+
+test("what is laid over the picture has its legend and its colours", async () => {
+    await open("&sample=tree&width=40");
+    await t.page.locator("input.handle").focus();
+    await t.page.keyboard.press("3");
+    const chooser = t.page.locator("select.overlay");
+    for (const [name, keys, colours] of [
+        ["change", 3, [[42, 120, 180], [112, 176, 214], [200, 90, 160]]],
+        ["lost", 2, [[214, 69, 48], [250, 170, 40]]],
+        ["conflict", 1, [[150, 90, 200]]],
+        ["error", 2, []],
+        ["print", 0, []],
+    ]) {
+        await chooser.selectOption(name);
+        await t.page.locator(`select.overlay[data-shows=${name}]`).waitFor();
+        assert.equal(await t.page.locator("#legend .key").count(), keys);
+        for (const colour of colours) assert.ok(await share(colour) > 0.0005, `${name}: ${colour}`);
+    }
+    await chooser.selectOption("lost");
+    await type("Width", 45); // a new run is painted so, too
+    await done();
+    await t.page.waitForFunction(() => document.querySelector("select.overlay").value === "lost");
+    assert.deepEqual(await barriers(), []);
+});
