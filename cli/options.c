@@ -68,6 +68,8 @@ static const option options[] = {
      "radius of the plate's corners (0)"},
     {"hole", "MM", NUMBER, GROUP_PLATE, FIELD(make.carve.hole_diameter_mm), 0, 100, "mm",
      "diameter of a hole to hang it by (0: none)"},
+    {"bridge-depth", "MM", NUMBER, GROUP_PLATE, FIELD(make.bridge_depth_mm), 0, 1000, "mm",
+     "how deep bridges are, at the side that is not seen: z = 0, the inside of a surface (as the rest)"},
     {"deviation", "MM", NUMBER, GROUP_PLATE, FIELD(make.trace.deviation_mm), 0.0001, 10, "mm",
      "how far outlines may leave the smooth curve (0.01)"},
 

@@ -53,7 +53,8 @@ done:
     return status;
 }
 
-// A strip between white margins, and its chart: column margin + lead is the part's column `shift`.
+// A strip with its chart. Its margins left and right go on as the part does: solid ends would join what the
+// circle does not.
 typedef struct strip {
     jali_bitmap picture;
     jali_chart chart;
@@ -97,8 +98,7 @@ static jali_status strip_create(jali_context *ctx, const jali_bitmap *part, cons
     s->chart.width_px = part->width_px + 2 * halo + 2 * margin;
     TRY(level_metric(ctx, chart, &s->chart));
     TRY(jali_bitmap_create(ctx, s->chart.width_px, chart->height_px, &s->picture));
-    fill(ctx, &s->picture, true);
-    TRY(lay_parts(ctx, part, s->first, margin, s->chart.width_px - margin, &s->picture));
+    TRY(lay_parts(ctx, part, s->first, 0, s->chart.width_px, &s->picture));
 done:
     if (status != JALI_OK) strip_free(ctx, s);
     return status;
@@ -136,34 +136,30 @@ done:
 
 // --- Optimising
 
-// Mend with the cut at one place after the other.
-static jali_status settle(jali_context *ctx, const jali_chart *chart, const jali_optimise_options *opt,
-                          int32_t halo, jali_bitmap *part, jali_round *residual)
+// What a mending made solid anywhere on the strip, in the part as well: a bridge that it laid near an end.
+static jali_status fold_added(jali_context *ctx, const strip *s, const jali_bitmap *before, jali_bitmap *part)
 {
-    jali_status status = JALI_OK;
-    strip s = {0};
-    jali_bitmap before = {0};
-    int32_t quiet = 0;
-    for (int32_t round = 0; quiet < 2; round++) {
-        int32_t shift = (int32_t)((int64_t)part->width_px * (round % 2 ? 3 : 2) / 4);
-        int64_t misfit;
-        if (round == MENDINGS)
-            TRY(fail(
-                ctx, JALI_NO_RESULT,
-                "the picture does not come to rest where its ends meet; another size or pixel would help"));
-        TRY(jali_bitmap_copy(ctx, part, &before));
-        TRY(strip_create(ctx, part, chart, shift, halo, &s));
-        TRY(jali_optimise_mend(ctx, &s.chart, opt, &s.picture, residual));
-        TRY(take_part(ctx, &s, &s.picture, shift, halo, part));
-        TRY(count_misfit(ctx, &s, part, halo, &misfit));
-        bool still = misfit == 0 && count_combined(ctx, RULE_XOR, part, &before) == 0;
-        quiet = still ? quiet + 1 : 0;
-        jali_bitmap_free(ctx, &before);
-        strip_free(ctx, &s);
+    jali_status status;
+    jali_bitmap added = {0}, piece = {0}, all = {0};
+    int32_t period = part->width_px, end = s->chart.width_px - s->chart.margin_px;
+    TRY(jali_bitmap_copy(ctx, &s->picture, &added));
+    combine(ctx, RULE_AND_NOT, &added, before, &added);
+    for (int32_t x = s->chart.margin_px; x < end;) {
+        int32_t first = wrapped((int64_t)x - s->first, period), width = MIN(period - first, end - x);
+        TRY(jali_bitmap_create(ctx, width, part->height_px, &piece));
+        TRY(jali_bitmap_create(ctx, period, part->height_px, &all));
+        cut_out(&added, x, 0, &piece);
+        fill(ctx, &all, false);
+        paste(&piece, first, 0, &all);
+        combine(ctx, RULE_OR, part, &all, part);
+        jali_bitmap_free(ctx, &piece);
+        jali_bitmap_free(ctx, &all);
+        x += width;
     }
 done:
-    jali_bitmap_free(ctx, &before);
-    strip_free(ctx, &s);
+    jali_bitmap_free(ctx, &added);
+    jali_bitmap_free(ctx, &piece);
+    jali_bitmap_free(ctx, &all);
     return status;
 }
 
@@ -185,6 +181,42 @@ static jali_status count_pieces(jali_context *ctx, const jali_bitmap *part, int3
 done:
     components_free(ctx, &c);
     arena_rewind(ctx, mark);
+    return status;
+}
+
+// Mend with the cut at one place after the other.
+static jali_status settle(jali_context *ctx, const jali_chart *chart, const jali_optimise_options *opt,
+                          int32_t halo, jali_bitmap *part, jali_round *residual, int32_t *pieces)
+{
+    jali_status status = JALI_OK;
+    strip s = {0};
+    jali_bitmap before = {0}, unmended = {0};
+    int32_t quiet = 0;
+    for (int32_t round = 0; quiet < 2; round++) {
+        int32_t shift = (int32_t)((int64_t)part->width_px * (round % 2 ? 3 : 2) / 4);
+        int64_t misfit;
+        if (round == MENDINGS)
+            TRY(fail(
+                ctx, JALI_NO_RESULT,
+                "the picture does not come to rest where its ends meet; another size or pixel would help"));
+        TRY(jali_bitmap_copy(ctx, part, &before));
+        TRY(strip_create(ctx, part, chart, shift, halo, &s));
+        TRY(jali_bitmap_copy(ctx, &s.picture, &unmended));
+        TRY(jali_optimise_mend(ctx, &s.chart, opt, &s.picture, residual));
+        TRY(take_part(ctx, &s, &s.picture, shift, halo, part));
+        TRY(count_pieces(ctx, part, pieces));
+        if (*pieces > 1) TRY(fold_added(ctx, &s, &unmended, part));
+        jali_bitmap_free(ctx, &unmended);
+        TRY(count_misfit(ctx, &s, part, halo, &misfit));
+        bool still = misfit == 0 && count_combined(ctx, RULE_XOR, part, &before) == 0;
+        quiet = still ? quiet + 1 : 0;
+        jali_bitmap_free(ctx, &before);
+        strip_free(ctx, &s);
+    }
+done:
+    jali_bitmap_free(ctx, &before);
+    jali_bitmap_free(ctx, &unmended);
+    strip_free(ctx, &s);
     return status;
 }
 
@@ -238,8 +270,7 @@ jali_status jali_optimise_around(jali_context *ctx, const jali_bitmap *drawing, 
     TRY(jali_optimise(ctx, &s.picture, &s.chart, &opt, result));
     TRY(take_part(ctx, &s, &result->mask, 0, halo, &part));
     TRY(lay_overlays(ctx, &s, chart, halo, period, result));
-    TRY(settle(ctx, chart, &opt, halo, &part, &result->residual));
-    TRY(count_pieces(ctx, &part, pieces));
+    TRY(settle(ctx, chart, &opt, halo, &part, &result->residual, pieces));
     jali_bitmap_free(ctx, &result->mask);
     TRY(jali_bitmap_create(ctx, chart->width_px, chart->height_px, &result->mask));
     TRY(lay_parts(ctx, &part, chart->margin_px, 0, chart->width_px, &result->mask));
@@ -392,5 +423,7 @@ jali_status jali_trace_around(jali_context *ctx, const jali_bitmap *mask, const 
         if (status != JALI_OK || whole) return status;
         jali_contours_free(ctx, contours);
     }
-    return fail(ctx, JALI_NO_RESULT, "a void winds around the surface more than %d times", MOST_TURNS - 1);
+    return fail(ctx, JALI_NO_RESULT,
+                "a void goes right around the surface, or winds around it more than %d times",
+                MOST_TURNS - 1);
 }

@@ -71,6 +71,7 @@ jali_options agreed_options(const jali_options *given)
     opt.place.phi_v_mm = opt.optimise.phi_v_mm;
     opt.place.paper = opt.optimise.paper;
     opt.carve.frame_mm = opt.place.frame_mm;
+    opt.optimise.mark_bridges |= opt.bridge_depth_mm > 0;
     return opt;
 }
 
@@ -295,17 +296,38 @@ done:
     return status;
 }
 
+static jali_status check_depth(jali_context *ctx, const jali_options *opt, double thickness_mm)
+{
+    double depth = opt->bridge_depth_mm, least = opt->optimise.phi_s_mm;
+    if (depth == 0) return JALI_OK;
+    if (opt->structure)
+        return fail(ctx, JALI_BAD_VALUE,
+                    "low bridges are not analysed: leave out either their depth or the load");
+    if (!(depth >= least) || !(depth < thickness_mm))
+        return fail(ctx, JALI_BAD_VALUE,
+                    "bridges %g mm deep: from phi_s, %g mm, to less than the thickness, %g mm, is accepted",
+                    depth, least, thickness_mm);
+    return JALI_OK;
+}
+
 jali_status jali_make(jali_context *ctx, jali_picture *picture, const jali_options *given, jali_result *r)
 {
     jali_status status;
     jali_options opt = agreed_options(given);
-    jali_contours outline = {0};
+    jali_contours outline = {0}, low = {0};
     *r = (jali_result){0};
+    TRY(check_depth(ctx, &opt, opt.carve.thickness_mm));
     TRY(image_stages(ctx, picture, &opt, NULL, NULL, &outline, r));
     double begun = now_seconds();
     if (opt.solid) {
+        if (opt.bridge_depth_mm > 0)
+            TRY(jali_trace_bridges(ctx, &r->optimised, &r->chart, opt.around, &opt.trace, &low));
         TRY(jali_plate(ctx, &outline, &r->chart, &opt.carve, &r->contours));
-        TRY(jali_carve(ctx, &outline, &r->chart, &opt.carve, &r->mesh));
+        if (opt.bridge_depth_mm > 0)
+            TRY(jali_carve_stepped(ctx, &outline, &low, opt.bridge_depth_mm, &r->chart, &opt.carve,
+                                   &r->mesh));
+        else
+            TRY(jali_carve(ctx, &outline, &r->chart, &opt.carve, &r->mesh));
         lap(r->seconds, JALI_STAGE_CARVE, &begun);
         if (opt.check) {
             TRY(jali_check(ctx, &r->mesh, NULL, &r->check));
@@ -317,6 +339,7 @@ jali_status jali_make(jali_context *ctx, jali_picture *picture, const jali_optio
 done:
     if (status != JALI_OK) jali_result_free(ctx, r);
     jali_contours_free(ctx, &outline);
+    jali_contours_free(ctx, &low);
     return status;
 }
 
@@ -364,7 +387,9 @@ static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const ja
     jali_status status;
     jali_options opt = agreed_options(given);
     jali_patch patch = {0};
+    jali_contours low = {0};
     jali_place_options *place = &opt.place;
+    TRY(check_depth(ctx, &opt, thickness_mm));
     if (opt.around)
         TRY(go_around(ctx, &opt, shell));
     else if (opt.repeat > 0 && place->width_mm == 0 &&
@@ -376,10 +401,16 @@ static jali_status pierce_one(jali_context *ctx, jali_picture *picture, const ja
     double begun = now_seconds();
     r->wall_mm = thinnest_wall(shell, &patch);
     r->printable = r->printable && r->wall_mm >= MIN(opt.optimise.phi_s_mm, thickness_mm);
-    if (opt.solid) TRY(jali_pierce(ctx, &r->contours, &patch, MIN(opt.backing_mm / thickness_mm, 1), shell));
+    if (opt.solid && opt.bridge_depth_mm > 0)
+        TRY(jali_trace_bridges(ctx, &r->optimised, &r->chart, opt.around, &opt.trace, &low));
+    if (opt.solid)
+        TRY(jali_pierce_stepped(ctx, &r->contours, opt.bridge_depth_mm > 0 ? &low : NULL,
+                                opt.bridge_depth_mm / thickness_mm, &patch,
+                                MIN(opt.backing_mm / thickness_mm, 1), shell));
     lap(r->seconds, JALI_STAGE_CARVE, &begun);
 done:
     jali_patch_free(ctx, &patch);
+    jali_contours_free(ctx, &low);
     return status;
 }
 

@@ -213,7 +213,7 @@ static jali_status finish_round(jali_context *ctx, optimising *o, bool first, ja
     TRY(jali_adapt_cores(ctx, &o->widths, !first, mask, &cores));
     if (first) {
         r->bridge_pixels = -count_white(ctx, mask);
-        if (o->opt.details) TRY(jali_bitmap_copy(ctx, mask, &r->bridge_mask));
+        if (o->opt.details || o->opt.mark_bridges) TRY(jali_bitmap_copy(ctx, mask, &r->bridge_mask));
     }
     TRY(jali_connect(ctx, &cores, &connect, &cores, &bridges));
     TRY(jali_adapt_lay(ctx, &bridges, &o->widths, mask));
@@ -248,7 +248,7 @@ static jali_status finish(jali_context *ctx, optimising *o, jali_bitmap *mask)
     jali_optimised *r = o->result;
     TRY(finish_rounds(ctx, o, true, 2, mask)); // the first only takes off, the second mends
     r->bridge_pixels += count_white(ctx, mask);
-    if (o->opt.details) combine(ctx, RULE_XOR, &r->bridge_mask, mask, &r->bridge_mask);
+    if (r->bridge_mask.width_px > 0) combine(ctx, RULE_XOR, &r->bridge_mask, mask, &r->bridge_mask);
 done:
     return status;
 }
@@ -426,7 +426,7 @@ jali_status jali_optimise_mend(jali_context *ctx, const jali_chart *chart, const
     jali_optimised found = {0};
     optimising o = {.chart = chart, .opt = given ? *given : jali_optimise_defaults(), .result = &found};
     jali_elements *elements = NULL;
-    o.opt.details = false;
+    o.opt.details = o.opt.mark_bridges = false;
     *residual = (jali_round){0};
     TRY(prepare(ctx, &o));
     TRY(jali_elements_create(ctx, &o.widths, mask->width_px, mask->height_px, &elements));

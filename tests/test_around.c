@@ -115,6 +115,27 @@ TEST(random_waves_go_around_as_solids)
     CHECK(crossing >= 4); // voids lie across the seam, not only beside it
 }
 
+// A ring of void all around, and a disc in it: bridges hold the upper rim as well as the disc.
+TEST(what_the_circle_parts_is_joined)
+{
+    for (int32_t repeat = 1; repeat <= 3; repeat++) {
+        jali_picture picture = {.width_px = 120, .height_px = 30};
+        jali_options opt = options(repeat);
+        jali_result r;
+        jali_object o;
+        CHECK_OK(ALLOCATE_CLEARED(ctx, picture.grey, 120 * 30));
+        for (int32_t y = 0; y < 30; y++)
+            for (int32_t x = 0; x < 120; x++)
+                if (hypot(x - 118, y - 15) < 8) picture.grey[120 * y + x] = 255;
+        carve_around("cylinder:r=9,h=50,tolerance=0.1", &picture, &opt, &r, &o);
+        CHECK(r.one_piece && r.printable && o.one_piece && o.closed);
+        check_widths(&r);
+        jali_result_free(ctx, &r);
+        jali_object_free(ctx, &o);
+        jali_picture_free(ctx, &picture);
+    }
+}
+
 // Half a turn of the picture is half a turn of the mask, and of the object: same volume, faces to spare.
 TEST(a_shifted_picture_gives_the_object_turned)
 {
@@ -231,9 +252,9 @@ TEST(every_allocation_refused_once)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        RUN(random_waves_go_around_as_solids),     RUN(a_shifted_picture_gives_the_object_turned),
-        RUN(contours_are_cut_at_the_same_heights), RUN(what_cannot_go_around_is_refused),
-        RUN(every_allocation_refused_once),
+        RUN(random_waves_go_around_as_solids),          RUN(what_the_circle_parts_is_joined),
+        RUN(a_shifted_picture_gives_the_object_turned), RUN(contours_are_cut_at_the_same_heights),
+        RUN(what_cannot_go_around_is_refused),          RUN(every_allocation_refused_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,6 +42,12 @@ JALI_API jali_status jali_plate(jali_context *ctx, const jali_contours *picture,
 JALI_API jali_status jali_carve(jali_context *ctx, const jali_contours *picture, const jali_chart *chart,
                                 const jali_carve_options *opt, jali_mesh *mesh);
 
+/// The same with regions in which the solid reaches from z = 0 to low_mm alone.
+///   in     low   closed contours of the regions on the same lattice; they may cross the picture's
+JALI_API jali_status jali_carve_stepped(jali_context *ctx, const jali_contours *picture,
+                                        const jali_contours *low, double low_mm, const jali_chart *chart,
+                                        const jali_carve_options *opt, jali_mesh *mesh);
+
 #ifdef __cplusplus
 }
 #endif

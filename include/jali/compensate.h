@@ -11,7 +11,7 @@ extern "C" {
 typedef struct jali_compensate_options {
     jali_shape shape; // disc, or the paper's square
     int32_t size_px;  // omega_c, odd: the solid loses (size_px - 1) / 2 at each edge; 1 changes nothing; < 0:
-                     // it gains (1 - size_px) / 2
+                      // it gains (1 - size_px) / 2
     bool outside_solid;
     const jali_chart *chart; // with a metric: size_px is on the surface (discs only); NULL: flat
 } jali_compensate_options;

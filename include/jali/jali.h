@@ -27,6 +27,7 @@
 #include <jali/compensate.h>
 #include <jali/connect.h>
 #include <jali/contours.h>
+#include <jali/lower.h>
 #include <jali/map.h>
 #include <jali/mesh.h>
 #include <jali/model.h>
@@ -79,11 +80,13 @@ typedef struct jali_options {
     bool around;    // the picture, or its copies, go once around the surface and meet at the back without a
                     // bar (default false); then they have no size of their own
     double backing_mm; // on surfaces: a film at the inner skin that stays in the voids; 0 (default) = none
-    bool predict;      // say what input, connected only and result come out as (default true)
-    bool recall;       // with the share of fine detail that survives (default true; slower)
-    bool solid;        // trace and carve too (default true); false = the image stages alone
-    bool check;        // check the mesh (default true)
-    bool structure;    // analyse and reinforce; needs `solid` (default false)
+    double bridge_depth_mm; // height of the bridges that join parts, from the hidden side (a plate's z = 0, a
+                            // surface's inner skin); 0 (default) = as high as the rest
+    bool predict;           // say what input, connected only and result come out as (default true)
+    bool recall;            // with the share of fine detail that survives (default true; slower)
+    bool solid;             // trace and carve too (default true); false = the image stages alone
+    bool check;             // check the mesh (default true)
+    bool structure;         // analyse and reinforce; needs `solid` (default false)
     jali_strengthen_options strengthen;
 } jali_options;
 
@@ -104,7 +107,7 @@ typedef struct jali_result {
     // What comes out of the printer, when predicted: of the input as it is, connected only, and of the
     // result.
     jali_prediction input_print, connected_print, result_print;
-    jali_lost lost; // what the last of them does not show; with `recall` and optimise's `details`
+    jali_lost lost;         // what the last of them does not show; with `recall` and optimise's `details`
     jali_contours contours; // of the plate: picture, frame, hanging hole
     jali_mesh mesh;
     jali_check_report check;

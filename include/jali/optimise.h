@@ -20,6 +20,7 @@ typedef struct jali_optimise_options {
     int32_t most_rounds;   // of Algorithm 3, >= 1 (8); recall gains nothing after 6 to 8
     double detail;         // weight of fine detail against wrong pixels, 0 to 100; times jali_adapt_options'
                            // axis_worth of both tones (1)
+    bool mark_bridges;     // keep bridge_mask (false)
     bool details;          // keep the details and conflicts for overlays and counts (costs a third more time)
 } jali_optimise_options;
 
@@ -40,7 +41,7 @@ typedef struct jali_optimised {
     jali_round *round;   // [round_count]
     jali_round residual; // details left in the mask: types A and B are zero
     bool cycled;         // the paper's rounds came back to an earlier picture and were stopped
-    // With `details`, for overlays:
+    // With `details`, for overlays; bridge_mask with `mark_bridges` alone as well:
     jali_details white, black; // of the first round
     jali_bitmap conflict;
     jali_bitmap bridge_mask; // pixels that the bridges of the result made white

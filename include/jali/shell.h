@@ -82,6 +82,13 @@ JALI_API void jali_patch_free(jali_context *ctx, jali_patch *patch);
 JALI_API jali_status jali_pierce(jali_context *ctx, const jali_contours *picture, const jali_patch *patch,
                                  double backing, jali_shell *shell);
 
+/// The same with regions in which the wall that stays reaches from the inner skin to a share of the thickness
+/// alone.
+///   in     low   closed contours of the regions on the same lattice, which may cross the picture's, or NULL
+JALI_API jali_status jali_pierce_stepped(jali_context *ctx, const jali_contours *picture,
+                                         const jali_contours *low, double low_share, const jali_patch *patch,
+                                         double backing, jali_shell *shell);
+
 /// The solid of a shell: outer skin, inner skin, and walls along every border.
 ///   out    mesh    closed, 2-manifold at edges and vertices, outward when inner lies inside
 ///   fails  JALI_BAD_INPUT (edges or vertices shared by more than two triangles or one fan; parts that would

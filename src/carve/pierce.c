@@ -22,6 +22,7 @@
 #include <stdlib.h>
 
 enum { NO_FACE = -1, UNSEEN = -2 };
+enum { EDGE_LOW = EDGE_WINDOW }; // of a region where the wall is low
 
 // An edge of the patch, run from its lower to its higher point number or the other way round, as the face on
 // its left has it.
@@ -33,12 +34,14 @@ typedef struct crease {
 typedef struct piercing {
     const jali_patch *patch;
     jali_shell *shell;
-    int32_t crease_count;
+    int32_t crease_count, low_end; // edges of the arrangement: creases, low regions, then the picture
     crease *crease;
     snapped s;
     triangulation plane;
     int32_t *face;    // [triangle_count] face of the patch each cell lies on
     uint8_t *tone;    // [triangle_count] 1 = void
+    uint8_t *low;     // [triangle_count] 1 = low where solid
+    double low_share; // of the thickness, from the inner skin; 1: there are no low regions
     int32_t *carrier; // [s.point_count] a crease that the place lies on, or -1
     int32_t *same;    // [s.point_count] itself, or the place on the other side of the seam
     int32_t *vertex;  // [s.point_count] vertex of the pierced shell, or -1: none yet
@@ -75,55 +78,87 @@ static jali_status refuse_place(jali_context *ctx, const piercing *p, jali_statu
                 at[0] * p->unit_mm, at[1] * p->unit_mm);
 }
 
-static jali_status arrange(jali_context *ctx, piercing *p, const jali_contours *picture)
+static void add_edges(const jali_contours *c, int32_t first, int32_t (*edge)[2], int32_t *count)
+{
+    for (int32_t k = 0; k < c->contour_count; k++)
+        for (int32_t begin = c->first[k], end = c->first[k + 1], i = begin; i < end; i++, (*count)++) {
+            edge[*count][0] = first + i;
+            edge[*count][1] = first + (i + 1 < end ? i + 1 : begin);
+        }
+}
+
+static void add_points(const jali_contours *c, int32_t (*point)[2], int32_t *count)
+{
+    if (c->point_count > 0) memcpy(point + *count, c->point, (size_t)c->point_count * sizeof *point);
+    *count += c->point_count;
+}
+
+// Edges of the surface first, then of the low regions, then of the picture. Snap rounding tests for crossings
+// what comes before a number; a crossing within the surface is its fault.
+static jali_status arrange(jali_context *ctx, piercing *p, const jali_contours *picture,
+                           const jali_contours *low)
 {
     jali_status status;
     const jali_patch *patch = p->patch;
-    int32_t(*point)[2], (*edge)[2], crossed[2], edges = 0;
-    size_t points = (size_t)patch->point_count + (size_t)picture->point_count;
+    int32_t(*point)[2], (*edge)[2], crossed[2], edges = 0, count = patch->point_count;
+    size_t points =
+        (size_t)patch->point_count + (size_t)picture->point_count + (size_t)(low ? low->point_count : 0);
     if (points + (size_t)p->crease_count > INT32_MAX / 4)
         return fail(ctx, JALI_LIMIT, "the picture and the surface have too many points: %zu", points);
     TRY(ARENA(ctx, point, points + 1));
-    TRY(ARENA(ctx, edge, (size_t)p->crease_count + (size_t)picture->point_count + 1));
+    TRY(ARENA(ctx, edge, (size_t)p->crease_count + points + 1));
     memcpy(point, patch->point, (size_t)patch->point_count * sizeof *point);
-    if (picture->point_count > 0)
-        memcpy(point + patch->point_count, picture->point, (size_t)picture->point_count * sizeof *point);
     for (int32_t i = 0; i < p->crease_count; i++, edges++)
         edge[edges][0] = p->crease[i].from, edge[edges][1] = p->crease[i].to;
-    for (int32_t c = 0; c < picture->contour_count; c++)
-        for (int32_t first = picture->first[c], end = picture->first[c + 1], i = first; i < end;
-             i++, edges++) {
-            edge[edges][0] = patch->point_count + i;
-            edge[edges][1] = patch->point_count + (i + 1 < end ? i + 1 : first);
-        }
+    if (low) {
+        add_edges(low, count, edge, &edges);
+        add_points(low, point, &count);
+    }
+    p->low_end = edges;
+    add_edges(picture, count, edge, &edges);
+    add_points(picture, point, &count);
     TRY(snap_round(ctx, (const int32_t(*)[2])point, (int32_t)points, (const int32_t(*)[2])edge, edges,
-                   p->crease_count, &p->s, crossed));
-    if (crossed[0] >= 0)
+                   p->low_end, &p->s, crossed));
+    if (crossed[0] >= 0 && crossed[1] < p->crease_count)
         TRY(refuse_place(ctx, p, JALI_NO_RESULT, patch->point[p->crease[crossed[0]].from],
                          "the surface covers the picture's window twice"));
 done:
     return status;
 }
 
-static int32_t pieces_of_creases(const piercing *p)
+static int32_t pieces_before(const piercing *p, int32_t edge)
 {
     int32_t count = 0;
-    while (count < p->s.piece_count && p->s.edge[count] < p->crease_count) count++;
+    while (count < p->s.piece_count && p->s.edge[count] < edge) count++;
     return count;
+}
+
+static int32_t pieces_of_creases(const piercing *p)
+{
+    return pieces_before(p, p->crease_count);
+}
+
+static jali_status insert_set(jali_context *ctx, piercing *p, int32_t from, int32_t to, uint8_t kind,
+                              contact *met)
+{
+    jali_status status;
+    int32_t(*odd)[2], count;
+    TRY(ARENA(ctx, odd, to - from + 1));
+    TRY(odd_pieces(ctx, (const int32_t(*)[2])p->s.piece + from, to - from, odd, &count));
+    TRY(insert_edges(ctx, &p->plane, (const int32_t(*)[2])odd, count, kind, false, met));
+done:
+    return status;
 }
 
 static jali_status triangulate(jali_context *ctx, piercing *p)
 {
     jali_status status;
     contact met;
-    int32_t creases = pieces_of_creases(p), contours = p->s.piece_count - creases, (*odd)[2], odd_count;
-    const int32_t(*piece)[2] = (const int32_t(*)[2])p->s.piece;
-    TRY(ARENA(ctx, odd, contours + 1));
-    TRY(odd_pieces(ctx, piece + creases, contours, odd, &odd_count));
+    int32_t creases = pieces_of_creases(p), low = pieces_before(p, p->low_end);
     TRY(insert_points(ctx, &p->plane, (const int32_t(*)[2])p->s.point, p->s.point_count));
-    TRY(insert_edges(ctx, &p->plane, piece, creases, EDGE_CREASE, false, &met));
-    if (met.found == NO_CONTACT)
-        TRY(insert_edges(ctx, &p->plane, (const int32_t(*)[2])odd, odd_count, EDGE_CONTOUR, false, &met));
+    TRY(insert_edges(ctx, &p->plane, (const int32_t(*)[2])p->s.piece, creases, EDGE_CREASE, false, &met));
+    if (met.found == NO_CONTACT) TRY(insert_set(ctx, p, creases, low, EDGE_LOW, &met));
+    if (met.found == NO_CONTACT) TRY(insert_set(ctx, p, low, p->s.piece_count, EDGE_CONTOUR, &met));
     if (met.found != NO_CONTACT)
         TRY(refuse_place(ctx, p, JALI_BROKEN, p->s.point[met.from], "edges still cross after snap rounding"));
 done:
@@ -333,7 +368,7 @@ static jali_status room_for(jali_context *ctx, const piercing *p, double backing
     TRY(ALLOCATE(ctx, out->inner, vertices + 1));
     if (p->shell->outer.uv) TRY(ALLOCATE(ctx, out->outer.uv, triangles + 1));
     if (p->shell->outer.faulty) TRY(ALLOCATE_CLEARED(ctx, out->outer.faulty, triangles + 1));
-    if (p->shell->solid || backing > 0) TRY(ALLOCATE(ctx, out->solid, triangles + 1));
+    if (p->shell->solid || backing > 0 || p->low_share < 1) TRY(ALLOCATE(ctx, out->solid, triangles + 1));
     memcpy(out->outer.mesh.vertex, old->vertex, (size_t)old->vertex_count * sizeof *old->vertex);
     memcpy(out->inner, p->shell->inner, (size_t)old->vertex_count * sizeof *out->inner);
     out->outer.mesh.vertex_count = old->vertex_count;
@@ -378,6 +413,8 @@ static void add_cell(piercing *p, int32_t t, double backing, jali_shell *out)
     if (out->outer.faulty) out->outer.faulty[into] = p->shell->outer.faulty[p->patch->face[face]];
     copy_solid(p->shell, p->patch->face[face], out, into);
     if (p->tone[t] && out->solid) out->solid[into][1] = (float)backing;
+    if (!p->tone[t] && p->low[t] && out->solid)
+        out->solid[into][1] = MIN(out->solid[into][1], (float)p->low_share);
 }
 
 static jali_status build(jali_context *ctx, piercing *p, double backing)
@@ -403,20 +440,23 @@ done:
     return status;
 }
 
-jali_status jali_pierce(jali_context *ctx, const jali_contours *picture, const jali_patch *patch,
-                        double backing, jali_shell *shell)
+jali_status jali_pierce_stepped(jali_context *ctx, const jali_contours *picture, const jali_contours *low,
+                                double low_share, const jali_patch *patch, double backing, jali_shell *shell)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    piercing p = {.patch = patch, .shell = shell, .unit_mm = picture->unit_mm};
+    piercing p = {
+        .patch = patch, .shell = shell, .unit_mm = picture->unit_mm, .low_share = low ? low_share : 1};
     TRY(step(ctx, "carve", 0));
     TRY(list_creases(ctx, &p));
-    TRY(arrange(ctx, &p, picture));
+    TRY(arrange(ctx, &p, picture, low));
     TRY(step(ctx, "carve", 0.3));
     TRY(triangulate(ctx, &p));
     TRY(label_faces(ctx, &p));
     TRY(ARENA(ctx, p.tone, p.plane.triangle_count + 1));
     TRY(label_tones(ctx, &p.plane, EDGE_CONTOUR, p.tone));
+    TRY(ARENA(ctx, p.low, p.plane.triangle_count + 1));
+    TRY(label_tones(ctx, &p.plane, EDGE_LOW, p.low));
     TRY(check_cover(ctx, &p));
     TRY(find_carriers(ctx, &p));
     TRY(join_seam(ctx, &p));
@@ -427,4 +467,10 @@ done:
     snapped_free(ctx, &p.s);
     arena_rewind(ctx, mark);
     return status;
+}
+
+jali_status jali_pierce(jali_context *ctx, const jali_contours *picture, const jali_patch *patch,
+                        double backing, jali_shell *shell)
+{
+    return jali_pierce_stepped(ctx, picture, NULL, 1, patch, backing, shell);
 }

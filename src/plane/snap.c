@@ -189,7 +189,8 @@ static jali_status cross_in_cell(jali_context *ctx, const snapping *w, int64_t c
             int32_t at[2];
             if (MAX(c[0], d[0]) < low || MIN(c[0], d[0]) > high || !cross_inside(a, b, c, d, at)) continue;
             if (cell_of(&w->grid, at) != cell) continue;
-            if (item[j] < w->disjoint && crossed[0] < 0) crossed[0] = item[i], crossed[1] = item[j];
+            if (item[j] < w->disjoint && (crossed[0] < 0 || item[j] < crossed[1]))
+                crossed[0] = item[i], crossed[1] = item[j];
             jali_status status = GROW(ctx, crossings->point, crossings->capacity, crossings->count + 1);
             if (status != JALI_OK) return status;
             memcpy(crossings->point[crossings->count++], at, sizeof at);

@@ -24,7 +24,7 @@ void snapped_free(jali_context *ctx, snapped *s);
 ///          edge      [edge_count] pairs of points
 ///          disjoint  edges from this number on are known not to cross each other and are not tested
 ///   out    s         free with snapped_free
-///          crossed   two edges below `disjoint` that cross, or -1, -1
+///          crossed   two edges below `disjoint` that cross, the later one as low as can be, or -1, -1
 ///   fails  JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
 ///   cost   near O(edges + crossings) when edges are spread evenly
 jali_status snap_round(jali_context *ctx, const int32_t (*point)[2], int32_t point_count,
