@@ -196,6 +196,44 @@ TEST(predict_says_what_a_printer_would_make_of_a_picture)
     unlink("a.png");
 }
 
+TEST(a_picture_is_read_as_grey_and_cropped_by_its_own_pixels)
+{
+    write_text("ramp.pgm", "P2 3 2 255 10 20 30 40 50 60", 28);
+    run("read ramp.pgm --crop 1,0,2,2 --rotate 90 -o turned.png --json r.json", 0,
+        "2 x 2 px; --threshold auto is");
+    run("read turned.png --json t.json", 0, "2 x 2 px");
+    CHECK_INT(system("cmp r.json t.json"), 0);
+    read_text("r.json", printed);
+    CHECK(strstr(printed, "\"threshold_auto\": 40") || strstr(printed, "\"threshold_auto\": 41"));
+    run("read ramp.pgm --crop 2,0,2,2", 2, "the crop 2,0,2,2 (left, top, width, height) does not lie inside");
+    run("read two.pbm --crop 0,0,4,1", 0, "all of one grey level");
+    run("read ramp.pgm -o g.stl", 2, "does not write this type");
+    run("read ramp.pgm --width 30", 2, "--width is not an option of jali read");
+}
+
+TEST(a_profile_is_written_in_full)
+{
+    run("printer fdm-0.4 -o whole.json", 0, "fdm-0.4: phi 0.2 / 0.8 / 0.6 mm");
+    run("printer ./whole.json -o again.json", 0, "");
+    CHECK_INT(system("cmp whole.json again.json"), 0);
+    run("printer fdm-9 -o no.json", 2, "there is no printer \"fdm-9\"");
+    run("printer two.pbm -o no.json", 2, "there is no printer");
+    run("printer ./two.pbm -o no.json", 4, "two.pbm");
+    CHECK(access("no.json", F_OK) != 0);
+}
+
+TEST(the_smallest_size_is_found_or_said_to_be_none)
+{
+    run("sample rings -o rings.png --size 120", 0, "");
+    run("smallest rings.png --json s.json", 0, "nothing is lost from a width of");
+    read_text("s.json", printed);
+    CHECK(strstr(printed, "\"confirmed_mm\"") && strstr(printed, "\"speck_px\": 8"));
+    run("smallest rings.png --most 5 --least 4", 0, "something is lost at every width up to 5 mm");
+    run("smallest rings.png --most 5 --least 6", 2, "widths from 6 to 5 mm cannot be tried");
+    run("smallest rings.png --speck 0", 2, "--speck must be");
+    unlink("rings.png");
+}
+
 TEST(a_board_is_made_and_measured)
 {
     run("board -o b.3mf -o b.svg --phi-s 0.2 --phi-v 0.3", 0, "135 features");
@@ -337,7 +375,7 @@ TEST(pictures_of_a_job_have_printers)
     const char *text =
         "{\"version\": 1, \"surface\": \"cylinder:r=30,h=80\", \"pictures\": ["
         "{\"picture\": \"../two.pbm\", \"width\": 30, \"printer\": \"own.json\", \"phi-v\": 0.7},"
-        "{\"picture\": \"../two.pbm\", \"width\": 30, \"at\": [0, 30, 40]}]}";
+        "{\"picture\": \"../two.pbm\", \"width\": 30, \"crop\": \"0,0,3,3\", \"at\": [0, 30, 40]}]}";
     CHECK_INT(mkdir("sub", 0700), 0);
     write_text("sub/own.json", own, strlen(own));
     write_text("sub/job.json", text, strlen(text));
@@ -345,7 +383,8 @@ TEST(pictures_of_a_job_have_printers)
     read_text("printers.json", json);
     const char *first = strstr(json, "\"of the job\""), *pictures = strstr(json, "\"pictures\"");
     CHECK(first && strstr(first, "\"phi_s_mm\": 0.25") && strstr(first, "\"phi_v_mm\": 0.7"));
-    CHECK(pictures && strstr(pictures, "\"form1+\"") && strstr(pictures, "\"phi_s_mm\": 0.3"));
+    CHECK(pictures && strstr(pictures, "\"width_px\": 3") && strstr(pictures, "\"form1+\"") &&
+          strstr(pictures, "\"phi_s_mm\": 0.3"));
     unlink("printers.stl");
 }
 
@@ -647,6 +686,9 @@ int main(void)
         cmocka_unit_test(numbers_are_numbers_in_their_range),
         cmocka_unit_test(a_printer_sets_what_no_option_does),
         cmocka_unit_test(predict_says_what_a_printer_would_make_of_a_picture),
+        cmocka_unit_test(a_picture_is_read_as_grey_and_cropped_by_its_own_pixels),
+        cmocka_unit_test(a_profile_is_written_in_full),
+        cmocka_unit_test(the_smallest_size_is_found_or_said_to_be_none),
         cmocka_unit_test(a_board_is_made_and_measured),
         cmocka_unit_test(bad_pictures_are_rejected),
         cmocka_unit_test(prints_are_compared_with_their_picture),

@@ -38,6 +38,15 @@ export function tabled(width, height, layers, colours) {
     return canvasOf(width, height, image);
 }
 
+/** Two pictures of one size, one over the other by a canvas's operation. */
+export function combined(a, b, operation) {
+    const canvas = new OffscreenCanvas(a.width, a.height), context = canvas.getContext("2d");
+    context.drawImage(a, 0, 0);
+    context.globalCompositeOperation = operation;
+    context.drawImage(b, 0, 0);
+    return canvas;
+}
+
 /** As bytesOf, what is white made so many pixels wider to each side: fine lines are seen from afar. */
 export function marksOf(bitmap, width, height, reach) {
     const canvas = new OffscreenCanvas(width, height), context = canvas.getContext("2d");

@@ -2,7 +2,7 @@
 //
 // Colours are told apart with every common colour blindness by lightness as well as by hue, on light solid and dark void.
 
-import { bytesOf, given, marksOf, plain, tabled } from "./compose.js";
+import { bytesOf, combined, given, marksOf, plain, tabled } from "./compose.js";
 
 export const SOLID = [239, 233, 223], VOID = [39, 38, 44];
 const MISSING = [214, 69, 48], EXCESS = [250, 204, 40], BRIDGE = [42, 120, 180], THICKENED = [112, 176, 214], WIDENED = [200, 90, 160],
@@ -11,6 +11,15 @@ const REACH_PX = 2; // lines of one pixel are drawn so much wider to each side, 
 
 // By was, is, mark: what the picture and the mask say of a pixel, and the layer of that overlay.
 const CHANGES = [VOID, VOID, THICKENED, BRIDGE, WIDENED, WIDENED, SOLID, SOLID];
+
+// By was, lost solid, lost void: either grows over what is beside it.
+const LOSSES = [VOID, LOST_VOID, LOST_SOLID, LOST_SOLID, SOLID, LOST_VOID, LOST_SOLID, LOST_SOLID];
+
+async function paintLost({ width, height, input }, layer) {
+    const [lost, was] = await Promise.all([layer("lost.png"), layer("input.png")]);
+    const solid = combined(lost, was, "multiply"), hollow = combined(lost, solid, "difference");
+    return tabled(width, height, [input, ...[solid, hollow].map((marks) => marksOf(marks, width, height, REACH_PX))], LOSSES);
+}
 
 const mark = async (layer, name, width, height, reach) => marksOf(await layer(name), width, height, reach);
 
@@ -22,7 +31,7 @@ export const OVERLAYS = [
         quick: ({ width, height, input, mask }) => tabled(width, height, [input, mask], [VOID, THICKENED, WIDENED, SOLID]),
         paint: async ({ width, height, input, mask }, layer) => tabled(width, height, [input, mask, await mark(layer, "bridges.png", width, height, 0)], CHANGES) },
     { name: "lost", words: "overlayLost", keys: [["lostSolid", LOST_SOLID], ["lostVoid", LOST_VOID]],
-        paint: async ({ width, height, input }, layer) => tabled(width, height, [input, await mark(layer, "lost.png", width, height, REACH_PX)], [VOID, LOST_VOID, SOLID, LOST_SOLID]) },
+        paint: paintLost },
     { name: "conflict", words: "overlayConflict", keys: [["conflictKey", CONFLICT]],
         paint: async ({ width, height, mask }, layer) => tabled(width, height, [mask, await mark(layer, "conflicts.png", width, height, 1)], [VOID, CONFLICT, SOLID, CONFLICT]) },
     { name: "print", words: "overlayPrint", keys: [],
