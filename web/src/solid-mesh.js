@@ -82,7 +82,7 @@ export function outwardAt({ position }, at) {
  *  The wall is taken across, along the outer skin's normal; what is much thicker than `about` mm is no wall. */
 export function wallOf(mesh, about) {
     const middle = [0, 1, 2].map((k) => (mesh.low[k] + mesh.high[k]) / 2), reach = mesh.high[0] - mesh.low[0] + 10;
-    for (const share of [0.97, 0.9, 0.75, 0.5, 0.3, 0.1]) {
+    for (const share of [0.8, 0.9, 0.97, 0.65, 0.5, 0.3, 0.1]) {
         const from = [middle[0] + reach, middle[1], mesh.low[2] + share * (mesh.high[2] - mesh.low[2])];
         const outer = hitOf(mesh, from, [-1, 0, 0]);
         if (!outer) continue;

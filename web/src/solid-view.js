@@ -7,7 +7,7 @@
 
 import {
     AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, Mesh, MeshLambertMaterial,
-    PerspectiveCamera, PointLight, Quaternion, Scene, Sphere, Vector3, WebGLRenderer,
+    PerspectiveCamera, PointLight, Quaternion, Scene, Sphere, Vector3, Vector4, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { make } from "./dom.js";
@@ -40,10 +40,23 @@ function mapMaterial() {
     return material;
 }
 
+// Stone, darker inside a hollow object: a void shows the dark behind it, as it would by day, and not more of the same stone.
+// `inside`: view coordinates of the object's middle, and how much is taken away there.
+function stoneMaterial(inside) {
+    const material = new MeshLambertMaterial({ color: new Color(0xe2d5c3), flatShading: true });
+    material.onBeforeCompile = (shader) => {
+        shader.uniforms.inside = inside;
+        shader.fragmentShader = `uniform vec4 inside;\n${shader.fragmentShader}`.replace("#include <emissivemap_fragment>", `
+            float outwards = dot(normal, normalize(-vViewPosition - inside.xyz));
+            diffuseColor.rgb *= 1.0 - inside.w * (1.0 - smoothstep(-0.5, 0.1, outwards));`);
+    };
+    return material;
+}
+
 export class SolidView {
     /** `wanted(layer)` is asked for the bytes of "stress" or "displacement" when they are to be shown. */
     constructor(stage, wanted) {
-        this.root = make("div", { class: "fill", hidden: true });
+        this.root = make("div", { class: "fill solid", hidden: true });
         this.wanted = wanted;
         this.layer = "object";
         this.lit = false;
@@ -83,7 +96,8 @@ export class SolidView {
         this.sun = new DirectionalLight(0xffffff, 2.3);
         this.lamp = new PointLight(0xffc078, 0, 0, 0);
         this.scene.add(this.object, this.ambient, this.sun, this.sun.target, this.lamp);
-        this.stone = new MeshLambertMaterial({ color: new Color(0xe2d5c3), flatShading: true });
+        this.inside = { value: new Vector4() };
+        this.stone = stoneMaterial(this.inside);
         this.map = mapMaterial();
         // Of a map, the rest of the object is there as a shade: what is not part of the sheet bears nothing here.
         this.shade = new MeshLambertMaterial({ color: new Color(0xb9ad9c), flatShading: true, transparent: true, opacity: 0.28, depthWrite: false,
@@ -246,8 +260,8 @@ export class SolidView {
         this.lit = on;
         const map = this.layer !== "object"; // its colours are to be read
         this.lamp.intensity = on && !map ? 3.2 : 0;
-        this.sun.intensity = map ? 0.9 : on ? 0.22 : 2.3;
-        this.ambient.intensity = map ? 2.2 : on ? 0.16 : 0.9;
+        this.sun.intensity = map ? 0.9 : on ? 0.22 : 2.5;
+        this.ambient.intensity = map ? 2.2 : on ? 0.16 : 1.25;
         this.root.classList.toggle("night", on);
         this.draw();
     }
@@ -303,6 +317,11 @@ export class SolidView {
         this.sun.position.x += 0.6 * reach;
         this.sun.position.z += 0.9 * reach;
         this.sun.target.position.copy(this.controls.target);
+        if (this.middle) {
+            this.camera.updateMatrixWorld();
+            this.ahead.copy(this.middle).applyMatrix4(this.camera.matrixWorldInverse);
+            this.inside.value.set(this.ahead.x, this.ahead.y, this.ahead.z, this.run.flat || this.lit ? 0 : 0.62);
+        }
         this.renderer.render(this.scene, this.camera);
         this.marks.update(this.view);
     }
