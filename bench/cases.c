@@ -73,7 +73,7 @@ static jali_status run_place(jali_context *ctx, subject *s, int32_t size)
 static jali_status run_connect(jali_context *ctx, subject *s, int32_t metric)
 {
     jali_bitmap joined = {0};
-    jali_connect_options opt = {(jali_metric)metric};
+    jali_connect_options opt = {.metric = (jali_metric)metric};
     jali_status status = jali_connect(ctx, &s->drawing, &opt, &joined, NULL);
     jali_bitmap_free(ctx, &joined);
     return status;

@@ -55,6 +55,23 @@ done:
     return status;
 }
 
+// The bridges that were laid, as edits that would draw them again.
+static jali_status bridges_json(jali_context *ctx, const made *m, jali_bytes *json)
+{
+    jali_status status;
+    jali_edits edits = {0};
+    const jali_result *r = &m->result[0];
+    if (m->count > 1)
+        return fail(ctx, JALI_BAD_VALUE, "%s holds the bridges of one picture, and the job has %d",
+                    m->set[0].bridges, m->count);
+    TRY(jali_edits_of_bridges(ctx, &r->optimised.laid, &r->chart, r->optimised.kernels_px[1], &m->picture[0],
+                              &m->set[0].read, MAX(m->set[0].make.repeat, 1), &edits));
+    TRY(jali_edits_write(ctx, &edits, json));
+done:
+    jali_edits_free(ctx, &edits);
+    return status;
+}
+
 /// What is written, filled in one after the other.
 typedef struct shelf {
     int32_t count;
@@ -79,6 +96,7 @@ static jali_status write_everything(jali_context *ctx, const settings *set, cons
         TRY(make_bytes(ctx, m, set->output[i], place_for(&s, set->output[i])));
     if (set->json) TRY(figures_json(ctx, m, place_for(&s, set->json)));
     if (set->report) TRY(report_html(ctx, m, place_for(&s, set->report)));
+    if (set->bridges) TRY(bridges_json(ctx, m, place_for(&s, set->bridges)));
     if (set->render)
         TRY(render_png(ctx, &m->object.mesh, &set->view, set->size_px, place_for(&s, set->render)));
     if (set->map) TRY(map_bytes(ctx, &m->result[0], set->map, JALI_STRESS, place_for(&s, set->map)));
@@ -90,6 +108,39 @@ static jali_status write_everything(jali_context *ctx, const settings *set, cons
 done:
     for (int32_t i = 0; i < s.count; i++) jali_bytes_free(ctx, &s.bytes[i]);
     return status;
+}
+
+// A pixel of the mask as one of the picture.
+static void in_picture(const jali_picture *picture, const jali_result *r, const int32_t at[2], int32_t px[2])
+{
+    const jali_chart *chart = &r->chart;
+    px[0] = MAX(0, jali_input_column(chart, picture->width_px, at[0], 1));
+    px[1] = MAX(0, jali_input_row(chart, picture->height_px, at[1], 1));
+}
+
+static void tell_edits(const settings *set, const jali_picture *picture, const jali_result *r)
+{
+    const jali_edited *e = &r->optimised.edited;
+    int32_t px[2];
+    if (!set->edits) return;
+    say(set, "by hand: %d drawn, %d forbidden, %d locked", e->count[JALI_EDIT_BRIDGE],
+        e->count[JALI_EDIT_FORBID], e->count[JALI_EDIT_LOCK]);
+    in_picture(picture, r, e->left_out_at, px);
+    if (e->left_out > 0)
+        say(set,
+            "%d part%s cannot be joined but through what is forbidden or locked and %s left out, the first "
+            "at "
+            "(%d, %d) px of the picture",
+            e->left_out, e->left_out == 1 ? "" : "s", e->left_out == 1 ? "is" : "are", px[0], px[1]);
+    in_picture(picture, r, e->loose_at, px);
+    if (e->loose > 0)
+        say(set,
+            "%d locked or drawn part%s loose, for no bridge may reach %s, the first at (%d, %d) px of the "
+            "picture",
+            e->loose, e->loose == 1 ? " is" : "s are", e->loose == 1 ? "it" : "them", px[0], px[1]);
+    if (e->locked_details > 0)
+        say(set, "%d detail%s in what is locked %s below the printer's widths", e->locked_details,
+            e->locked_details == 1 ? "" : "s", e->locked_details == 1 ? "is" : "are");
 }
 
 static void tell_picture(const settings *set, const jali_picture *picture, const jali_result *r)
@@ -107,6 +158,7 @@ static void tell_picture(const settings *set, const jali_picture *picture, const
     say(set, "%d x %d px in %d white piece%s; %d bridge%s laid", picture->width_px, picture->height_px,
         r->input_pieces, r->input_pieces == 1 ? "" : "s", r->optimised.bridges,
         r->optimised.bridges == 1 ? "" : "s");
+    tell_edits(set, picture, r);
     if (set->make.nudge_rounds)
         say(set, "nudged in %d round%s: %.2f %% of the predicted print wrong before, %.2f %% after",
             r->nudge.rounds, r->nudge.rounds == 1 ? "" : "s", 100 * r->nudge.error_before,
@@ -163,12 +215,18 @@ bool sound_of(const made *m)
 static jali_status keep_promises(jali_context *ctx, const made *m)
 {
     bool closed = !m->set[0].make.solid || !m->set[0].make.check || m->object.closed, printable = true;
-    for (int32_t i = 0; i < m->count; i++) printable &= m->result[i].printable;
+    bool by_hand = false;
+    for (int32_t i = 0; i < m->count; i++) {
+        printable &= m->result[i].printable;
+        by_hand |=
+            m->result[i].optimised.edited.loose > 0 || m->result[i].optimised.edited.locked_details > 0;
+    }
     if (m->object.one_piece && printable && closed && sound_of(m)) return JALI_OK;
-    return fail(ctx, JALI_BROKEN, "done, but a promise is not kept:%s%s%s%s",
+    return fail(ctx, JALI_BROKEN, "done, but a promise is not kept:%s%s%s%s%s",
                 m->object.one_piece ? "" : " it is not one piece;",
                 printable ? "" : " some details are below the printer's widths;",
-                closed ? "" : " the mesh is not a solid;", sound_of(m) ? "" : " it does not bear the load;");
+                closed ? "" : " the mesh is not a solid;", sound_of(m) ? "" : " it does not bear the load;",
+                by_hand ? " what was locked or drawn by hand stays as it is;" : "");
 }
 
 // A plate is an object with one picture.
@@ -225,12 +283,27 @@ static void made_free(jali_context *ctx, made *m)
     for (int32_t i = 0; i < m->count; i++) {
         if (m->result) jali_result_free(ctx, &m->result[i]);
         if (m->picture) jali_picture_free(ctx, &m->picture[i]);
+        if (m->edits) jali_edits_free(ctx, &m->edits[i]);
     }
     release(ctx, m->result);
     release(ctx, m->picture);
+    release(ctx, m->edits);
     release(ctx, m->set);
     jali_object_free(ctx, &m->object);
     *m = (made){0};
+}
+
+// A picture and what was laid down on it by hand.
+static jali_status load_with_edits(jali_context *ctx, settings *set, jali_picture *picture, jali_edits *edits)
+{
+    jali_status status;
+    TRY(load_picture(ctx, set, picture));
+    if (!set->edits) return JALI_OK;
+    TRY(jali_edits_read(ctx, set->edits, edits));
+    TRY(jali_edits_follow(ctx, &set->read, picture->file_px, edits));
+    set->make.optimise.edits = edits;
+done:
+    return status;
 }
 
 // One picture from the command line, or those of a job.
@@ -241,6 +314,7 @@ static jali_status collect(jali_context *ctx, settings *set, bool solid, job *j,
     m->count = set->job ? j->count : 1;
     TRY(ALLOCATE(ctx, m->set, m->count));
     TRY(ALLOCATE_CLEARED(ctx, m->picture, m->count));
+    TRY(ALLOCATE_CLEARED(ctx, m->edits, m->count));
     TRY(ALLOCATE_CLEARED(ctx, m->result, m->count));
     for (int32_t i = 0; i < m->count; i++) {
         m->set[i] = set->job ? j->each[i] : *set;
@@ -248,7 +322,7 @@ static jali_status collect(jali_context *ctx, settings *set, bool solid, job *j,
         m->set[i].wall = set->wall;
         m->set[i].make.solid = solid;
         m->set[i].make.optimise.details = set->report || set->json || layers_need_details(set->layers);
-        TRY(load_picture(ctx, &m->set[i], &m->picture[i]));
+        TRY(load_with_edits(ctx, &m->set[i], &m->picture[i], &m->edits[i]));
     }
 done:
     if (status != JALI_OK && !m->set) m->count = 0;

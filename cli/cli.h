@@ -25,6 +25,8 @@ typedef struct settings {
     const char *output[MOST_OUTPUTS];
     int32_t output_count;
     const char *json, *report, *render; // files
+    const char *edits;                  // file of what was laid down by hand
+    const char *bridges;                // where the bridges found are written, as such edits
     const char *map, *moved_map;        // stress and displacement: .png, .ply, .vtu
     uint32_t layers;                    // bit i: layer i of layers.h as well, under its own name
     double limit_mpa;                   // 0 = the material's
@@ -147,6 +149,7 @@ typedef struct made {
     int32_t count;
     settings *set;         // [count] one a picture
     jali_picture *picture; // [count]
+    jali_edits *edits;     // [count], in pixels of the picture
     jali_result *result;   // [count]
     jali_object object;    // a plate too; empty when only pictures were made
 } made;

@@ -105,6 +105,15 @@ json_t *printer_of(const settings *set)
     return own;
 }
 
+// What came of the edits by hand.
+static json_t *edits_of(const settings *set, const jali_edited *e)
+{
+    if (!set->edits) return json_null();
+    return json_pack("{s:i, s:i, s:i, s:i, s:i, s:i}", "bridges", e->count[JALI_EDIT_BRIDGE], "forbidden",
+                     e->count[JALI_EDIT_FORBID], "locked", e->count[JALI_EDIT_LOCK], "left_out", e->left_out,
+                     "loose", e->loose, "locked_details", e->locked_details);
+}
+
 static json_t *vector_of(const double v[3])
 {
     return json_pack("[f, f, f]", v[0], v[1], v[2]);
@@ -139,17 +148,17 @@ static json_t *picture_of(const settings *set, const jali_picture *picture, cons
     int32_t columns = r->chart.width_px - 2 * r->chart.margin_px,
             rows = r->chart.height_px - 2 * r->chart.margin_px;
     const int32_t *kernel = r->optimised.kernels_px;
-    return json_pack("{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:o, s:{s:i, s:i, s:i},"
-                     " s:{s:i, s:I, s:i}, s:o, s:o, s:o, s:o}",
-                     "input", "width_px", picture->width_px, "height_px", picture->height_px,
-                     "white_components", r->input_pieces, "threshold", r->threshold, "size_mm",
-                     columns * pixel_mm, rows * pixel_mm, "grid_px", columns, rows, "pixel_mm", pixel_mm,
-                     "place", set->surface ? place_of(r) : json_null(), "printer", printer_of(set),
-                     "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2],
-                     "connect", "bridges", r->optimised.bridges, "pixels",
-                     (json_int_t)r->optimised.bridge_pixels, "pieces_dropped", r->optimised.pieces_dropped,
-                     "adapt", adapt_of(&r->optimised), "nudge", nudge_of(set, &r->nudge), "predict",
-                     predict_of(set, r), "structure", structure_of(set, &r->strength));
+    return json_pack(
+        "{s:{s:i, s:i, s:i, s:i}, s:[f, f], s:[i, i], s:f, s:o, s:o, s:{s:i, s:i, s:i},"
+        " s:{s:i, s:I, s:i}, s:o, s:o, s:o, s:o, s:o}",
+        "input", "width_px", picture->width_px, "height_px", picture->height_px, "white_components",
+        r->input_pieces, "threshold", r->threshold, "size_mm", columns * pixel_mm, rows * pixel_mm, "grid_px",
+        columns, rows, "pixel_mm", pixel_mm, "place", set->surface ? place_of(r) : json_null(), "printer",
+        printer_of(set), "kernels_px", "omega_c", kernel[0], "omega_w", kernel[1], "omega_b", kernel[2],
+        "connect", "bridges", r->optimised.bridges, "pixels", (json_int_t)r->optimised.bridge_pixels,
+        "pieces_dropped", r->optimised.pieces_dropped, "edits", edits_of(set, &r->optimised.edited), "adapt",
+        adapt_of(&r->optimised), "nudge", nudge_of(set, &r->nudge), "predict", predict_of(set, r),
+        "structure", structure_of(set, &r->strength));
 }
 
 static json_t *tone_of(const jali_lost_tone *tone)

@@ -111,6 +111,7 @@ static jali_status read_picture(jali_context *ctx, settings *set, job *j, json_t
     TRY(set_all(ctx, j, object, own, OF_PICTURE, one));
     if (one->printer != set->printer && jali_printer_is_file(one->printer))
         TRY(path_from_job(ctx, set, j, one->printer, &one->printer));
+    if (one->edits != set->edits) TRY(path_from_job(ctx, set, j, one->edits, &one->edits));
     settle_options(one);
     TRY(settle_printer(ctx, one));
     j->count++;

@@ -18,6 +18,9 @@ static const option options[] = {
     {"json", "FILE", TEXT, GROUP_JSON, FIELD(json), 0, 0, 0, "write the figures as JSON (- is stdout)"},
     {"report", "FILE", TEXT, GROUP_REPORT, FIELD(report), 0, 0, 0, "write a report as one HTML file"},
 
+    {"bridges", "FILE", TEXT, GROUP_REPORT, FIELD(bridges), 0, 0, 0,
+     "write the bridges that were laid, as --edits takes them"},
+
     {"threshold", "0..255|auto|local", THRESHOLD, GROUP_PICTURE, 0, 0, 255, 0,
      "grey level from which a pixel is white; local follows uneven light (auto)"},
     {"window", "PX", WHOLE, GROUP_PICTURE, FIELD(make.threshold.window_px), 3, 4001, "px",
@@ -59,6 +62,8 @@ static const option options[] = {
      "move edges until the predicted print comes nearest to the picture, at most so many rounds; 3 is enough (0)"},
     {"kernels", "C,W,B", KERNELS, GROUP_METHOD, 0, 0, 0, 0,
      "set the elements' sizes in working pixels outright"},
+    {"edits", "FILE", TEXT, GROUP_METHOD, FIELD(edits), 0, 0, 0,
+     "bridges drawn by hand, places where none may run, regions to leave alone (docs/edits.md)"},
     {"no-predict", NULL, FLAG_OFF, GROUP_METHOD, FIELD(make.predict), 0, 0, 0,
      "do not say what the printer makes of it"},
 

@@ -104,7 +104,8 @@ bool check_outputs(const verb *v, const settings *set, char *sentence)
             snprintf(sentence, SENTENCE_BYTES, "%s: a map is a .png, .ply or .vtu", maps[i]);
             return false;
         }
-    const char *const beside[] = {set->json, set->report, set->render, set->map, set->moved_map};
+    const char *const beside[] = {set->json,   set->report, set->bridges,
+                                  set->render, set->map,    set->moved_map};
     for (int32_t i = 0; i < OUTPUTS_BESIDE; i++) {
         if (!check_output_beside(set, beside[i], sentence)) return false;
         if (beside[i]) path[count++] = beside[i];

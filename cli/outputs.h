@@ -5,7 +5,7 @@
 #include "cli.h"
 
 enum {
-    OUTPUTS_BESIDE = 5, // figures, report, render, two maps
+    OUTPUTS_BESIDE = 6, // figures, report, bridges, render, two maps
     MOST_LAYERS = 9,
     MOST_FILES = MOST_OUTPUTS + OUTPUTS_BESIDE + MOST_LAYERS
 };

@@ -39,7 +39,8 @@ static inline int run_drawn(const drawn_run *run, const uint8_t *data, size_t si
     jali_context *ctx;
     REQUIRE(jali_context_create(&own, &ctx) == JALI_OK);
     int32_t width = 1 + data[0] % run->most_side_px, height = 1 + data[1] % run->most_side_px;
-    jali_picture picture = {width, height, grey_of(data + head, size - head, width, height)};
+    jali_picture picture = {
+        .width_px = width, .height_px = height, .grey = grey_of(data + head, size - head, width, height)};
     jali_options opt = run->settings(data, width, height);
     jali_result result;
     jali_status status = jali_make(ctx, &picture, &opt, &result);

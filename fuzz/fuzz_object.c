@@ -69,7 +69,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     jali_context *ctx;
     REQUIRE(jali_context_create(&own, &ctx) == JALI_OK);
     int32_t width = 2 + data[19] / 3 % MOST_SIDE_PX, height = 2 + data[18] / 2 % MOST_SIDE_PX;
-    jali_picture picture = {width, height, grey_of(data + PARAMETERS, size - PARAMETERS, width, height)};
+    jali_picture picture = {.width_px = width,
+                            .height_px = height,
+                            .grey = grey_of(data + PARAMETERS, size - PARAMETERS, width, height)};
     jali_options opt = placement(data, width);
     jali_shell_options wall = {0.2 + 0.1 * (data[9] / 8), 0.02};
     jali_surface surface = {0};

@@ -37,7 +37,7 @@ static double share_of(source *s)
 static jali_picture picture_of_bytes(source *s)
 {
     int32_t width = 1 + byte_of(s) % MOST_SIDE, height = 1 + byte_of(s) % MOST_SIDE;
-    jali_picture p = {width, height, malloc((size_t)width * (size_t)height)};
+    jali_picture p = {.width_px = width, .height_px = height, .grey = malloc((size_t)width * (size_t)height)};
     for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
         p.grey[i] = s->size > 0 ? s->data[i % s->size] : 0;
     return p;

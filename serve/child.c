@@ -97,27 +97,27 @@ static void add_frame(child *c, int32_t index, frame_kind kind, const char *name
 
 void child_give(child *c, task *t, double most_seconds)
 {
-    static const char *const names[] = {NULL, "model.mesh", "printer.json"};
-    blob *const files[] = {t->picture, t->mesh, t->printer};
+    static const char *const names[] = {NULL, "model.mesh", "printer.json", "edits.json"};
+    blob *const files[] = {t->picture, t->mesh, t->printer, t->edits};
     memcpy(c->job, t->id, TOKEN_BYTES);
     c->until = seconds_now() + most_seconds;
     c->request = t->request; // it is ours now: the job may be forgotten
     t->request = NULL;
     add_frame(c, 0, FRAME_JOB, "", c->request, strlen(c->request));
-    for (int32_t i = 0; i < 3; i++)
+    for (int32_t i = 0; i < CHILD_INPUTS; i++)
         if (files[i]) {
             c->held[i] = blob_hold(files[i]);
             add_frame(c, 1 + i, FRAME_FILE, i == 0 ? t->picture_name : names[i], files[i]->data,
                       files[i]->size);
         }
-    add_frame(c, 4, FRAME_RUN, "", NULL, 0);
+    add_frame(c, 1 + CHILD_INPUTS, FRAME_RUN, "", NULL, 0);
 }
 
 static void stop_feeding(child *c)
 {
     if (c->to >= 0) close(c->to);
     c->to = -1;
-    for (int32_t i = 0; i < 3; i++) {
+    for (int32_t i = 0; i < CHILD_INPUTS; i++) {
         blob_let_go(c->held[i]);
         c->held[i] = NULL;
     }

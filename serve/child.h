@@ -5,7 +5,11 @@
 #include "frames.h"
 #include "serve.h"
 
-enum { MOST_PARTS = 16 };
+enum {
+    CHILD_INPUTS = 4, // picture, mesh, printer, edits
+    CHILD_FRAMES = 2 + CHILD_INPUTS,
+    MOST_PARTS = 3 * CHILD_FRAMES
+};
 
 /// What is still to be written to it: bytes that lie elsewhere.
 typedef struct part {
@@ -23,9 +27,9 @@ typedef struct child {
     part part[MOST_PARTS]; // [part_count], the first `written` done, and so much of the next
     int32_t part_count, written;
     size_t written_of_part;
-    frame_head head[5];
+    frame_head head[CHILD_FRAMES];
     char *request;
-    blob *held[3];
+    blob *held[CHILD_INPUTS];
     // The frame that comes in.
     uint8_t *frame; // [frame_capacity]
     size_t frame_size, frame_capacity;

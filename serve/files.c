@@ -9,6 +9,7 @@
 static const job_file files[] = {
     {"figures.json", "application/json", FIELD(json), NULL},
     {"report.html", "text/html; charset=utf-8", FIELD(report), NULL},
+    {"bridges.json", "application/json", FIELD(bridges), NULL},
     {"render.png", "image/png", FIELD(render), NULL},
     {"stress.png", "image/png", FIELD(map), NULL},
     {"stress.ply", "application/octet-stream", FIELD(map), NULL},

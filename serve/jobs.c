@@ -20,8 +20,9 @@ static void drop_request(task *t)
     blob_let_go(t->picture);
     blob_let_go(t->mesh);
     blob_let_go(t->printer);
+    blob_let_go(t->edits);
     free(t->request);
-    t->picture = t->mesh = t->printer = NULL;
+    t->picture = t->mesh = t->printer = t->edits = NULL;
     t->request = NULL;
 }
 

@@ -31,7 +31,7 @@ static bool refuse(reading *r, unsigned status, const char *format, ...)
 static bool known_keys(reading *r)
 {
     static const char *const known[] = {"picture", "mesh", "printer", "options", "files",
-                                        "client",  "verb", "name",    "name",
+                                        "client",  "verb", "name",    "edits",
 #ifdef JALI_HOOKS
                                         "hook",
 #endif
@@ -196,6 +196,22 @@ static bool read_printer(reading *r)
     return kept;
 }
 
+// They go to the worker as a file of their own, which says what is wrong with them.
+static bool read_edits(reading *r)
+{
+    json_t *edits = json_object_get(r->root, "edits");
+    if (!edits || json_is_null(edits)) return true;
+    if (!json_is_object(edits))
+        return refuse(r, MHD_HTTP_BAD_REQUEST, "\"edits\" of a job is an object (docs/edits.md)");
+    char *text = json_dumps(edits, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    r->t->edits = text ? store_room(r->s, strlen(text)) : NULL;
+    bool kept = r->t->edits && blob_append(r->t->edits, text, strlen(text));
+    free(text);
+    if (!kept) return refuse(r, MHD_HTTP_SERVICE_UNAVAILABLE, "there is no room for the edits");
+    json_object_set_new(r->worker, "edits", json_string("edits.json"));
+    return true;
+}
+
 static bool read_all(reading *r, const blob *body)
 {
     json_error_t error;
@@ -204,7 +220,7 @@ static bool read_all(reading *r, const blob *body)
         return refuse(r, MHD_HTTP_BAD_REQUEST, "this is no JSON: line %d: %.200s", error.line, error.text);
     if (!json_is_object(r->root)) return refuse(r, MHD_HTTP_BAD_REQUEST, "a job is a JSON object");
     if (!known_keys(r) || !read_client(r) || !read_files(r) || !read_uploads(r) || !read_options(r) ||
-        !read_printer(r))
+        !read_printer(r) || !read_edits(r))
         return false;
     r->t->request = json_dumps(r->worker, JSON_COMPACT);
     if (!r->t->request || !random_id(r->t->id))

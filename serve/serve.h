@@ -61,8 +61,8 @@ typedef struct task {
     uint32_t version; // counts changes, so that a stream of events knows one
     uint64_t used;
     char picture_name[MOST_NAME_BYTES + 1];
-    char *request;                  // JSON for the worker
-    blob *picture, *mesh, *printer; // what it reads; the latter two may be NULL
+    char *request;                          // JSON for the worker
+    blob *picture, *mesh, *printer, *edits; // what it reads; all but the first may be NULL
     char stage[64];
     double fraction;
     int exit;

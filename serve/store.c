@@ -37,7 +37,7 @@ blob *store_room(server *s, size_t bytes)
 
 bool name_is_fit(const char *name)
 {
-    static const char *const taken[] = {"", "-", "model.mesh", "printer.json"};
+    static const char *const taken[] = {"", "-", "model.mesh", "printer.json", "edits.json"};
     json_t *valid = json_string(name); // UTF-8
     bool fit = valid && strlen(name) <= MOST_NAME_BYTES;
     json_decref(valid);

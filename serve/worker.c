@@ -161,6 +161,8 @@ static jali_status run_job(worker *w, json_t *asked)
     TRY(set_options(w->ctx, json_object_get(asked, "options"), v, &set));
     if (json_string_value(json_object_get(asked, "printer")))
         set.printer = json_string_value(json_object_get(asked, "printer"));
+    if (json_string_value(json_object_get(asked, "edits")))
+        set.edits = json_string_value(json_object_get(asked, "edits"));
     TRY(set_files(w->ctx, json_object_get(asked, "files"), v, &set));
     settle_options(&set);
     TRY(settle_printer(w->ctx, &set));

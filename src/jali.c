@@ -254,12 +254,19 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     jali_picture row = {0};
     jali_place_options place = opt->place;
     int32_t pieces = 0;
+    jali_options own = *opt;
+    jali_edits edits = {0};
     jali_wall wall = {.plate = shell ? NULL : &opt->carve, .shell = shell, .patch = patch};
     double begun = now_seconds();
     if (opt->repeat > 1) {
         TRY(repeated(ctx, picture, opt->repeat, &row));
         picture = &row;
         place.width_mm *= opt->repeat;
+        if (opt->optimise.edits) {
+            TRY(jali_edits_repeat(ctx, opt->optimise.edits, opt->repeat, &edits));
+            own.optimise.edits = &edits;
+            opt = &own;
+        }
     }
     TRY(black_and_white(ctx, picture, opt, r));
     lap(r->seconds, JALI_STAGE_THRESHOLD, &begun);
@@ -292,6 +299,7 @@ static jali_status image_stages(jali_context *ctx, jali_picture *picture, const 
     lap(r->seconds, JALI_STAGE_PREDICT, &begun);
 done:
     jali_bitmap_free(ctx, &drawing);
+    jali_edits_free(ctx, &edits);
     jali_picture_free(ctx, &row);
     return status;
 }

@@ -32,6 +32,7 @@ typedef struct nudging {
     const jali_optimise_options *opt;
     double fine_px_a_px; // of the reference's grid, a mask's
     double reach_fine_px, along_fine_px, about_fine_px;
+    jali_bitmap locked; // by hand; not owned
 } nudging;
 
 // A mask and what comes of it.
@@ -181,6 +182,13 @@ done:
     return status;
 }
 
+// What is locked by hand is as it was: a mask is mended with what it has there.
+static void leave_locked(const nudging *n, const jali_bitmap *before, jali_bitmap *mask)
+{
+    for (int64_t i = 0; n->locked.word && i < mask->stride * mask->height_px; i++)
+        mask->word[i] ^= (mask->word[i] ^ before->word[i]) & n->locked.word[i];
+}
+
 static bool better(const state *a, const state *b)
 {
     const jali_round *p = &a->residual, *q = &b->residual;
@@ -211,6 +219,7 @@ static jali_status nudge_round(jali_context *ctx, const nudging *n, double share
         TRY(step(ctx, "nudge", (double)y / now->mask.height_px));
         TRY(move_band(ctx, n, now, share, y, MIN(y + BAND_ROWS, now->mask.height_px), &moved.mask));
     }
+    leave_locked(n, &now->mask, &moved.mask);
     TRY(look(ctx, n, &moved));
     TRY(gain_of(ctx, n, &now->print.printed, &moved.print.printed, &gain));
     TRY(jali_bitmap_copy(ctx, &moved.mask, &mixed.mask));
@@ -242,12 +251,16 @@ jali_status jali_nudge(jali_context *ctx, const jali_reference *reference,
                  jali_chart_pixel_mm(chart) / fine_mm,
                  REACH * width_mm / fine_mm,
                  ALONG_MM / fine_mm,
-                 ABOUT * width_mm / fine_mm};
+                 ABOUT * width_mm / fine_mm,
+                 {0}};
+    jali_marks marks = {0};
     state now = {.residual = result->residual};
     quick.recall = false;
     *report = (jali_nudge_report){0};
     if (rounds < 0 || rounds > 100)
         return fail(ctx, JALI_BAD_VALUE, "%d rounds of nudging were asked for; 0 to 100 is accepted", rounds);
+    if (opt->edits && opt->edits->count > 0) TRY(jali_edits_draw(ctx, opt->edits, chart, &marks));
+    n.locked = marks.locked;
     TRY(jali_bitmap_copy(ctx, &result->mask, &now.mask));
     TRY(jali_predict(ctx, reference, &now.mask, chart->margin_px, chart->outside_solid, &quick, &now.print));
     report->error_before = now.print.error_rate;
@@ -268,6 +281,7 @@ jali_status jali_nudge(jali_context *ctx, const jali_reference *reference,
     if (result->bridge_mask.word)
         combine(ctx, RULE_AND, &result->bridge_mask, &result->mask, &result->bridge_mask);
 done:
+    jali_marks_free(ctx, &marks);
     state_free(ctx, &now);
     return status;
 }

@@ -11,9 +11,13 @@
 //            go, then the mask is the print less what the printer adds, and the finish joins it.
 // Ends:    rounds are counted; the finish only adds solid after its first round (src/adapt/finish.c).
 // Checked: tests/test_optimise.c; docs/results.md on 24 runs over real pictures.
+// By hand: drawn bridges are part of the drawing, bridges bend around what is forbidden or locked, and what
+// is
+//          locked or drawn is put back wherever a stage has changed it (hand.c).
 #include <jali/compensate.h>
 #include <jali/connect.h>
 #include <jali/optimise.h>
+#include "hand.h"
 #include "raster/raster.h"
 #include "base/base.h"
 
@@ -35,6 +39,7 @@ void jali_optimised_free(jali_context *ctx, jali_optimised *result)
     jali_bitmap_free(ctx, &result->bridge_mask);
     jali_details_free(ctx, &result->white);
     jali_details_free(ctx, &result->black);
+    jali_bridges_free(ctx, &result->laid);
     release(ctx, result->round);
     *result = (jali_optimised){0};
 }
@@ -111,9 +116,27 @@ typedef struct optimising {
     jali_optimise_options opt;
     jali_adapt_options widths; // of the mask
     jali_metric metric;
-    size_t round_capacity;
+    hand by_hand;
+    size_t round_capacity, laid_capacity, via_capacity;
     jali_optimised *result;
 } optimising;
+
+// Join parts, around what is blocked: by the strokes' width in the mask or in the print.
+static jali_status connect(jali_context *ctx, optimising *o, bool in_print, const jali_bitmap *picture,
+                           const jali_bitmap *parts, jali_bitmap *joined, jali_bridges *bridges)
+{
+    jali_status status;
+    jali_bitmap blocked = {0};
+    jali_connect_options opt = {.metric = o->metric};
+    if (o->by_hand.any) {
+        TRY(jali_adapt_blocked(ctx, &o->widths, in_print, picture, &blocked));
+        opt.blocked = &blocked;
+    }
+    TRY(jali_connect(ctx, parts, &opt, joined, bridges));
+done:
+    jali_bitmap_free(ctx, &blocked);
+    return status;
+}
 
 static jali_status record_round(jali_context *ctx, optimising *o, const jali_details *white,
                                 const jali_details *black, int32_t conflicts)
@@ -180,17 +203,17 @@ static jali_status adapt_in_rounds(jali_context *ctx, optimising *o, jali_bitmap
     jali_details white = {0}, black = {0};
     jali_bitmap conflict = {0};
     uint64_t *seen = NULL;
-    jali_connect_options connect = {o->metric};
     TRY(ALLOCATE(ctx, seen, o->opt.most_rounds));
     for (int32_t round = 0; round < o->opt.most_rounds; round++) {
         TRY(step(ctx, "adapt", (double)round / o->opt.most_rounds));
-        TRY(jali_connect(ctx, picture, &connect, picture, NULL));
+        TRY(connect(ctx, o, false, picture, picture, picture, NULL));
         seen[round] = hash_of(picture);
         for (int32_t i = 0; i < round; i++) o->result->cycled |= seen[i] == seen[round];
         if (o->result->cycled) break;
         TRY(look(ctx, o, picture, &o->widths, &white, &black, &conflict));
         if (!anything_to_treat(&white) && !anything_to_treat(&black)) break;
         TRY(jali_adapt_round(ctx, &white, &black, &conflict, picture));
+        hand_keep(ctx, &o->by_hand, false, picture);
         keep_or_drop(ctx, o, &white, &black, &conflict);
     }
 done:
@@ -201,13 +224,55 @@ done:
 
 // --- The finish: one piece, nothing thinner than the widths, no neck either
 
-// One round: cores, bridges between them, voids that became too narrow. Only the first may take solid off.
-static jali_status finish_round(jali_context *ctx, optimising *o, bool first, jali_bitmap *mask)
+// Keep the bridges that made pixels white.
+static jali_status record_bridges(jali_context *ctx, optimising *o, const jali_bridges *bridges)
+{
+    jali_status status = JALI_OK;
+    jali_bridges *laid = &o->result->laid;
+    for (int32_t i = 0; i < bridges->count; i++) {
+        const jali_bridge *one = &bridges->bridge[i];
+        if (one->pixels == 0) continue;
+        TRY(GROW(ctx, laid->bridge, o->laid_capacity, laid->count + 1));
+        TRY(GROW(ctx, laid->via, o->via_capacity, laid->via_count + one->via_count));
+        laid->bridge[laid->count] = *one;
+        laid->bridge[laid->count++].via_first = laid->via_count;
+        for (int32_t k = 0; k < one->via_count; k++, laid->via_count++)
+            memcpy(laid->via[laid->via_count], bridges->via[one->via_first + k], sizeof *laid->via);
+        laid->pixels += one->pixels;
+    }
+done:
+    return status;
+}
+
+// Parts that no bridge may reach go, and the bridges between them.
+static jali_status take_off_stranded(jali_context *ctx, optimising *o, jali_bitmap *cores,
+                                     jali_bridges *bridges, jali_bitmap *mask)
+{
+    jali_status status;
+    jali_bitmap off = {0};
+    int32_t kept = 0;
+    TRY(hand_find_loose(ctx, &o->by_hand, cores, o->widths.outside_solid, false, &off, &o->result->edited));
+    if (!off.word) goto done;
+    combine(ctx, RULE_AND_NOT, cores, &off, cores);
+    TRY(jali_adapt_take_off(ctx, &off, cores, &o->widths, mask));
+    for (int32_t i = 0; i < bridges->count; i++) {
+        const int32_t *from = bridges->bridge[i].from;
+        if (!jali_bitmap_get(&off, from[0], from[1])) bridges->bridge[kept++] = bridges->bridge[i];
+    }
+    bridges->count = kept;
+done:
+    jali_bitmap_free(ctx, &off);
+    return status;
+}
+
+// One round: cores, bridges between them, voids that became too narrow. Only the first may take solid off,
+// and parts that nothing may join.
+static jali_status finish_round(jali_context *ctx, optimising *o, bool first, bool may_strand,
+                                jali_bitmap *mask)
 {
     jali_status status;
     jali_bitmap cores = {0};
     jali_bridges bridges = {0};
-    jali_connect_options connect = {o->metric};
     jali_optimised *r = o->result;
     TRY(step(ctx, "finish", 0));
     TRY(jali_adapt_cores(ctx, &o->widths, !first, mask, &cores));
@@ -215,14 +280,19 @@ static jali_status finish_round(jali_context *ctx, optimising *o, bool first, ja
         r->bridge_pixels = -count_white(ctx, mask);
         if (o->opt.details || o->opt.mark_bridges) TRY(jali_bitmap_copy(ctx, mask, &r->bridge_mask));
     }
-    TRY(jali_connect(ctx, &cores, &connect, &cores, &bridges));
+    TRY(connect(ctx, o, false, mask, &cores, &cores, &bridges));
+    if (bridges.stranded && may_strand) TRY(take_off_stranded(ctx, o, &cores, &bridges, mask));
     TRY(jali_adapt_lay(ctx, &bridges, &o->widths, mask));
+    TRY(record_bridges(ctx, o, &bridges));
     r->bridges += bridges.count;
 done:
     jali_bridges_free(ctx, &bridges);
     jali_bitmap_free(ctx, &cores);
     return status;
 }
+
+// Taking off stranded parts in every round need not end: what thickens a detail may bring one back.
+enum { MOST_STRANDINGS = 4 };
 
 // Rounds until nothing changes; at least `least` of them.
 static jali_status finish_rounds(jali_context *ctx, optimising *o, bool take_off, int32_t least,
@@ -233,7 +303,7 @@ static jali_status finish_rounds(jali_context *ctx, optimising *o, bool take_off
     bool changed = true;
     for (int32_t round = 0; changed || round < least; round++) {
         TRY(jali_bitmap_copy(ctx, mask, &before));
-        TRY(finish_round(ctx, o, take_off && round == 0, mask));
+        TRY(finish_round(ctx, o, take_off && round == 0, take_off && round < MOST_STRANDINGS, mask));
         changed = count_combined(ctx, RULE_XOR, mask, &before) > 0;
         jali_bitmap_free(ctx, &before);
     }
@@ -242,11 +312,24 @@ done:
     return status;
 }
 
+// What the rounds could not join goes too, unless it is fixed.
+static jali_status take_off_loose(jali_context *ctx, optimising *o, jali_bitmap *mask)
+{
+    jali_bitmap off = {0};
+    if (!o->by_hand.any) return JALI_OK;
+    jali_status status =
+        hand_find_loose(ctx, &o->by_hand, mask, o->widths.outside_solid, true, &off, &o->result->edited);
+    if (off.word) combine(ctx, RULE_AND_NOT, mask, &off, mask);
+    jali_bitmap_free(ctx, &off);
+    return status;
+}
+
 static jali_status finish(jali_context *ctx, optimising *o, jali_bitmap *mask)
 {
     jali_status status;
     jali_optimised *r = o->result;
     TRY(finish_rounds(ctx, o, true, 2, mask)); // the first only takes off, the second mends
+    TRY(take_off_loose(ctx, o, mask));
     r->bridge_pixels += count_white(ctx, mask);
     if (r->bridge_mask.width_px > 0) combine(ctx, RULE_XOR, &r->bridge_mask, mask, &r->bridge_mask);
 done:
@@ -262,6 +345,13 @@ static jali_status count_residual(jali_context *ctx, optimising *o, const jali_b
     TRY(jali_adapt_details(ctx, mask, false, &o->widths, &black));
     memcpy(o->result->residual.white, white.count, sizeof white.count);
     memcpy(o->result->residual.black, black.count, sizeof black.count);
+    o->result->edited.locked_details = 0;
+    if (o->by_hand.marks.count[JALI_EDIT_LOCK] > 0) {
+        int32_t reach_px = MAX(o->widths.solid_px, o->widths.void_px),
+                *count = &o->result->edited.locked_details;
+        TRY(hand_count_locked(ctx, &o->by_hand, &white, true, reach_px, count));
+        TRY(hand_count_locked(ctx, &o->by_hand, &black, false, reach_px, count));
+    }
 done:
     jali_details_free(ctx, &white);
     jali_details_free(ctx, &black);
@@ -270,17 +360,23 @@ done:
 
 // --- The two ways
 
+// From the print to the mask; the paper has one kernel for the whole picture.
+static jali_compensate_options compensation(const optimising *o)
+{
+    return (jali_compensate_options){o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid,
+                                     o->opt.paper ? NULL : o->chart};
+}
+
 // Algorithm 1 as printed.
 static jali_status by_the_paper(jali_context *ctx, optimising *o, const jali_bitmap *drawing,
                                 jali_bitmap *mask)
 {
     jali_status status;
     jali_bitmap joined = {0};
-    jali_connect_options connect = {o->metric};
-    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid,
-                                          NULL}; // one kernel for the whole picture
-    TRY(jali_connect(ctx, drawing, &connect, &joined, NULL));
+    jali_compensate_options compensate = compensation(o);
+    TRY(connect(ctx, o, false, drawing, drawing, &joined, NULL));
     TRY(jali_compensate(ctx, &joined, &compensate, mask));
+    hand_keep(ctx, &o->by_hand, false, mask);
     TRY(adapt_in_rounds(ctx, o, mask));
 done:
     jali_bitmap_free(ctx, &joined);
@@ -308,15 +404,15 @@ static jali_status by_design_of_the_print(jali_context *ctx, optimising *o, cons
     jali_bitmap print = {0}, joined = {0};
     jali_bridges bridges = {0};
     jali_stamp_report report;
-    jali_connect_options connect = {o->metric};
-    jali_compensate_options compensate = {o->widths.shape, o->result->kernels_px[0], o->chart->outside_solid,
-                                          o->chart};
+    jali_compensate_options compensate = compensation(o);
     if (o->opt.details) TRY(look_at_drawing(ctx, o, drawing));
     TRY(jali_adapt_print(ctx, drawing, &o->widths, &print, &report));
     TRY(jali_adapt_smooth(ctx, &o->widths, &print));
-    TRY(jali_connect(ctx, &print, &connect, &joined, &bridges));
+    hand_keep(ctx, &o->by_hand, true, &print);
+    TRY(connect(ctx, o, true, &print, &print, &joined, &bridges));
     TRY(jali_adapt_prune(ctx, drawing, &bridges, &o->widths, &print, &o->result->pieces_dropped));
     TRY(jali_compensate(ctx, &print, &compensate, mask));
+    hand_keep(ctx, &o->by_hand, false, mask);
 done:
     jali_bridges_free(ctx, &bridges);
     jali_bitmap_free(ctx, &print);
@@ -372,6 +468,26 @@ static jali_status check_something_left(jali_context *ctx, const optimising *o, 
         left == all ? "void" : "solid", left == all ? o->opt.phi_v_mm : o->opt.phi_s_mm);
 }
 
+static jali_status draw_by_hand(jali_context *ctx, optimising *o, const jali_bitmap *tones)
+{
+    jali_compensate_options compensate = compensation(o);
+    return hand_create(ctx, o->opt.edits, o->chart, &compensate, tones, &o->widths, &o->by_hand);
+}
+
+// Drawn bridges count as bridges.
+static void count_drawn(jali_context *ctx, optimising *o, const jali_bitmap *drawing)
+{
+    jali_optimised *r = o->result;
+    hand *h = &o->by_hand;
+    if (!h->any) return;
+    memcpy(r->edited.count, h->marks.count, sizeof r->edited.count);
+    r->bridges += h->marks.drawn.count;
+    r->bridge_pixels += count_combined(ctx, RULE_AND_NOT, &h->drawn, drawing);
+    if (!r->bridge_mask.word) return;
+    combine(ctx, RULE_AND_NOT, &h->drawn, drawing, &h->drawn);
+    combine(ctx, RULE_OR, &r->bridge_mask, &h->drawn, &r->bridge_mask);
+}
+
 jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,
                           const jali_optimise_options *given, jali_optimised *result)
 {
@@ -382,14 +498,65 @@ jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const j
     TRY(prepare(ctx, &o));
     TRY(jali_elements_create(ctx, &o.widths, drawing->width_px, drawing->height_px, &elements));
     o.widths.elements = elements;
-    TRY(o.opt.paper ? by_the_paper(ctx, &o, drawing, &result->mask)
-                    : by_design_of_the_print(ctx, &o, drawing, &result->mask));
+    TRY(draw_by_hand(ctx, &o, drawing));
+    const jali_bitmap *picture = o.by_hand.any ? &o.by_hand.picture : drawing;
+    TRY(o.opt.paper ? by_the_paper(ctx, &o, picture, &result->mask)
+                    : by_design_of_the_print(ctx, &o, picture, &result->mask));
     TRY(finish(ctx, &o, &result->mask));
+    count_drawn(ctx, &o, drawing);
     TRY(check_something_left(ctx, &o, drawing, &result->mask));
     TRY(count_residual(ctx, &o, &result->mask));
 done:
     if (status != JALI_OK) jali_optimised_free(ctx, result);
+    hand_free(ctx, &o.by_hand);
     jali_elements_free(ctx, elements);
+    return status;
+}
+
+jali_status jali_optimise_blocked(jali_context *ctx, const jali_chart *chart,
+                                  const jali_optimise_options *given, const jali_optimised *result,
+                                  jali_bitmap *blocked)
+{
+    jali_status status;
+    optimising o = {.chart = chart, .opt = given ? *given : jali_optimise_defaults()};
+    jali_optimised kernels = {0};
+    o.result = &kernels;
+    *blocked = (jali_bitmap){0};
+    TRY(prepare(ctx, &o));
+    TRY(draw_by_hand(ctx, &o, &result->mask));
+    if (o.by_hand.any) TRY(jali_adapt_blocked(ctx, &o.widths, false, &result->mask, blocked));
+done:
+    hand_free(ctx, &o.by_hand);
+    return status;
+}
+
+static bool is_free(const jali_bridges *bridges, int32_t i, const jali_bitmap *mask,
+                    const jali_bitmap *blocked)
+{
+    int32_t from[2], to[2];
+    for (int32_t leg = 0; jali_bridge_leg(bridges, i, leg, from, to); leg++) {
+        line_walk walk = walk_line(from, to);
+        while (walk_on(&walk))
+            if (jali_bitmap_get(blocked, walk.x, walk.y) && !jali_bitmap_get(mask, walk.x, walk.y))
+                return false;
+    }
+    return true;
+}
+
+// Those straight bridges that cross nothing that is forbidden or locked.
+static jali_status take_free_ones(jali_context *ctx, optimising *o, const jali_bridges *bridges,
+                                  jali_bridges *free_ones)
+{
+    jali_status status;
+    jali_bitmap blocked = {0};
+    const jali_bitmap *mask = &o->result->mask;
+    if (o->by_hand.any) TRY(jali_adapt_blocked(ctx, &o->widths, false, mask, &blocked));
+    TRY(ALLOCATE(ctx, free_ones->bridge, bridges->count));
+    for (int32_t i = 0; i < bridges->count; i++)
+        if (!o->by_hand.any || is_free(bridges, i, mask, &blocked))
+            free_ones->bridge[free_ones->count++] = bridges->bridge[i];
+done:
+    jali_bitmap_free(ctx, &blocked);
     return status;
 }
 
@@ -400,12 +567,18 @@ jali_status jali_optimise_add(jali_context *ctx, const jali_bridges *bridges, co
     optimising o = {.chart = chart, .opt = given ? *given : jali_optimise_defaults(), .result = result};
     jali_elements *elements = NULL;
     jali_bitmap before = {0};
+    jali_bridges free_ones = {0};
+    o.laid_capacity = (size_t)result->laid.count;
+    o.via_capacity = (size_t)result->laid.via_count;
     TRY(prepare(ctx, &o));
     TRY(jali_elements_create(ctx, &o.widths, result->mask.width_px, result->mask.height_px, &elements));
     o.widths.elements = elements;
+    TRY(draw_by_hand(ctx, &o, &result->mask));
     TRY(jali_bitmap_copy(ctx, &result->mask, &before));
-    TRY(jali_adapt_lay(ctx, bridges, &o.widths, &result->mask));
-    result->bridges += bridges->count;
+    TRY(take_free_ones(ctx, &o, bridges, &free_ones));
+    TRY(jali_adapt_lay(ctx, &free_ones, &o.widths, &result->mask));
+    TRY(record_bridges(ctx, &o, &free_ones));
+    result->bridges += free_ones.count;
     TRY(finish_rounds(ctx, &o, false, 1, &result->mask));
     result->bridge_pixels += count_combined(ctx, RULE_AND_NOT, &result->mask, &before);
     if (result->bridge_mask.width_px > 0) {
@@ -415,6 +588,8 @@ jali_status jali_optimise_add(jali_context *ctx, const jali_bridges *bridges, co
     TRY(count_residual(ctx, &o, &result->mask));
 done:
     jali_bitmap_free(ctx, &before);
+    jali_bridges_free(ctx, &free_ones);
+    hand_free(ctx, &o.by_hand);
     jali_elements_free(ctx, elements);
     return status;
 }
@@ -431,11 +606,13 @@ jali_status jali_optimise_mend(jali_context *ctx, const jali_chart *chart, const
     TRY(prepare(ctx, &o));
     TRY(jali_elements_create(ctx, &o.widths, mask->width_px, mask->height_px, &elements));
     o.widths.elements = elements;
+    TRY(draw_by_hand(ctx, &o, mask));
     TRY(finish(ctx, &o, mask));
     TRY(count_residual(ctx, &o, mask));
     *residual = found.residual;
 done:
     jali_optimised_free(ctx, &found);
+    hand_free(ctx, &o.by_hand);
     jali_elements_free(ctx, elements);
     return status;
 }

@@ -145,9 +145,12 @@ static jali_status search(jali_context *ctx, job *j, double limit, bool *found)
     jali_status status;
     jali_strength *s = j->s;
     jali_reinforcement r = {0};
+    jali_bitmap blocked = {0};
     jali_reinforce_options opt = j->opt.reinforce;
     opt.limit_mpa = limit;
     opt.most_rounds = j->rounds_left;
+    TRY(jali_optimise_blocked(ctx, j->chart, j->optimise, j->optimised, &blocked));
+    if (blocked.word) opt.blocked = &blocked;
     TRY(jali_reinforce(ctx, &j->draft.sheet, &j->optimised->mask, j->chart, &opt, &j->draft.analysis, &r));
     j->rounds_left -= r.round_count;
     s->helpless = r.helpless;
@@ -161,6 +164,7 @@ static jali_status search(jali_context *ctx, job *j, double limit, bool *found)
         TRY(make_draft(ctx, j));
     }
 done:
+    jali_bitmap_free(ctx, &blocked);
     jali_reinforcement_free(ctx, &r);
     return status;
 }

@@ -180,7 +180,7 @@ static inline jali_picture looked_at(const printed *p, const look *l)
     size_t count = (size_t)l->width * (size_t)l->height;
     float *level = malloc(count * sizeof *level);
     uint64_t seed = l->seed * 2654435761u + 12345;
-    jali_picture picture = {l->width, l->height, malloc(count)};
+    jali_picture picture = {.width_px = l->width, .height_px = l->height, .grey = malloc(count)};
     // A pixel whose corners are alike is of one tone: nothing that is printed is as narrow as a pixel.
     bool *above = malloc((size_t)l->width + 1), *below = malloc((size_t)l->width + 1);
     look_at_corners(p, l, 0, below);

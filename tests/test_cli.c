@@ -388,6 +388,47 @@ TEST(pictures_of_a_job_have_printers)
     unlink("printers.stl");
 }
 
+static void write_edits(const char *text)
+{
+    write_text("edits.json", text, strlen(text));
+}
+
+// The bridges found are edits: given again they stand, and no other is needed. The sentences say what edits
+// cost.
+TEST(bridges_are_pinned_drawn_forbidden_and_regions_locked)
+{
+    char json[TEXT_BYTES];
+    write_sample();
+    run("adapt rings.png --width 20 -o found.png --bridges found.json", 0, "bridges laid");
+    read_text("found.json", json);
+    CHECK(strstr(json, "\"size\": [300, 300]") && strstr(json, "{\"kind\": \"bridge\""));
+    run("adapt rings.png --width 20 -o pinned.png --edits found.json --bridges none.json", 0,
+        "0 forbidden, 0 locked");
+    read_text("none.json", json);
+    CHECK(strstr(json, "\"edits\": []"));
+    run("adapt rings.png --width 30 --rotate 90 --crop 10,10,280,280 --edits found.json -o turned.png", 0,
+        "drawn");
+    write_edits("{\"version\": 1, \"size\": [1, 1], \"edits\": [{\"kind\": \"forbid\", "
+                "\"points\": [[0.2, 0.2], [0.8, 0.2], [0.8, 0.8], [0.2, 0.8]]}]}");
+    run("adapt rings.png --width 20 -o less.png --edits edits.json --json less.json", 0, "left out");
+    read_text("less.json", json);
+    CHECK(strstr(json, "\"forbidden\": 1") && !strstr(json, "\"left_out\": 0"));
+    write_edits("{\"version\": 1, \"size\": [1, 1], \"edits\": [{\"kind\": \"lock\", "
+                "\"points\": [[0, 0], [1, 0], [1, 1], [0, 1]]}]}");
+    int code = finish(start("adapt rings.png --width 20 -o locked.png --edits edits.json"));
+    CHECK_INT(code, 3);
+    CHECK(strstr(said, "not one piece") && strstr(said, "locked or drawn by hand"));
+    write_edits("{\"version\": 1, \"size\": [2, 1], \"edits\": []}");
+    run("adapt rings.png -o a.png --edits edits.json", 0, "");
+    write_edits("{\"version\": 1, \"size\": [2, 1], \"edits\": [{\"kind\": \"bridge\", "
+                "\"points\": [[0, 0], [1, 1]]}]}");
+    run("adapt rings.png -o b.png --edits edits.json", 4, "of another shape");
+    run("adapt rings.png -o b.png --edits nowhere.json", 1, "No such file");
+    run("adapt rings.png -o b.png --bridges found.json", 2, "exists");
+    run("place rings.png -o b.png --edits edits.json", 2, "not an option");
+    CHECK(access("b.png", F_OK) != 0);
+}
+
 TEST(pictures_are_carved_through_a_surface)
 {
     write_sample();
@@ -692,6 +733,7 @@ int main(void)
         cmocka_unit_test(a_board_is_made_and_measured),
         cmocka_unit_test(bad_pictures_are_rejected),
         cmocka_unit_test(prints_are_compared_with_their_picture),
+        cmocka_unit_test(bridges_are_pinned_drawn_forbidden_and_regions_locked),
         cmocka_unit_test(surfaces_and_jobs_are_refused_with_a_sentence),
         cmocka_unit_test(pictures_of_a_job_have_printers),
         cmocka_unit_test(pictures_are_carved_through_a_surface),

@@ -151,7 +151,8 @@ TEST(scans_that_will_not_do_are_refused_with_a_reason)
     subject s = subject_of(5, SIDE_MM);
     camera how = {16, 0.1, 0, false, false, 0.2, 0.02, 0.5};
     jali_comparison c;
-    jali_picture scan = photographed(&s, &how, 7), cut = {scan.width_px, scan.height_px * 6 / 10, scan.grey};
+    jali_picture scan = photographed(&s, &how, 7),
+                 cut = {.width_px = scan.width_px, .height_px = scan.height_px * 6 / 10, .grey = scan.grey};
     CHECK_STATUS(jali_compare_scan(ctx, &s.reference, &cut, &s.opt, &c), JALI_NO_RESULT); // half a plate
     print_message("%s\n", jali_message(ctx));
     CHECK(c.plate.word == NULL && c.print.printed.word == NULL);

@@ -135,7 +135,7 @@ static void check_octagon(greedy *g, const jali_bridge *bridge)
 
 static void check_connect(const jali_bitmap *drawing, jali_metric metric)
 {
-    jali_connect_options opt = {metric};
+    jali_connect_options opt = {.metric = metric};
     jali_bitmap joined;
     jali_bridges bridges;
     CHECK_OK(jali_connect(ctx, drawing, &opt, &joined, &bridges));
@@ -345,9 +345,157 @@ TEST(a_cancelled_run_has_no_result)
     jali_bitmap_free(ctx, &a);
 }
 
+// --- Around what is blocked
+
+// Steps along rows and columns from a part to any other through black pixels that are not blocked; -1: none.
+static int32_t steps_around(const greedy *g, const plain *blocked, int32_t part)
+{
+    int32_t n = g->p.w * g->p.h, head = 0, tail = 0, found = -1;
+    int32_t *queue = malloc((size_t)n * sizeof *queue), *far = malloc((size_t)n * sizeof *far);
+    for (int32_t i = 0; i < n; i++) {
+        far[i] = g->label[i] == part ? 0 : -1;
+        if (far[i] == 0) queue[tail++] = i;
+    }
+    while (head < tail && found < 0) {
+        int32_t i = queue[head++], x = i % g->p.w, y = i / g->p.w;
+        const int32_t beside[4][2] = {{x, y - 1}, {x - 1, y}, {x + 1, y}, {x, y + 1}};
+        for (int32_t k = 0; k < 4 && found < 0; k++) {
+            int32_t j = beside[k][1] * g->p.w + beside[k][0];
+            if (!plain_inside(&g->p, beside[k][0], beside[k][1]) || far[j] >= 0) continue;
+            if (blocked->white[j] && !g->p.white[j]) continue;
+            far[j] = far[i] + 1;
+            queue[tail++] = j;
+            if (g->p.white[j]) found = far[j];
+        }
+    }
+    free(queue);
+    free(far);
+    return found;
+}
+
+static int32_t length_of(const jali_bridges *bridges, int32_t i)
+{
+    int32_t from[2], to[2], length = 0;
+    for (int32_t leg = 0; jali_bridge_leg(bridges, i, leg, from, to); leg++)
+        length += abs(to[0] - from[0]) + abs(to[1] - from[1]);
+    return length;
+}
+
+// No blocked pixel is laid, what can be joined is, the first bridge is a shortest one.
+static void check_around(const jali_bitmap *drawing, const jali_bitmap *blocked, jali_metric metric)
+{
+    jali_connect_options opt = {.metric = metric, .blocked = blocked};
+    jali_bitmap joined;
+    jali_bridges bridges;
+    CHECK_OK(jali_connect(ctx, drawing, &opt, &joined, &bridges));
+    greedy g = greedy_begin(drawing);
+    plain walls = plain_of(blocked), reached = plain_of(drawing), after = plain_of(&joined);
+    int32_t n = walls.w * walls.h, *label = malloc(((size_t)n + 1) * sizeof *label);
+    for (int32_t i = 0; i < n; i++) {
+        CHECK(after.white[i] >= reached.white[i]);
+        CHECK(!walls.white[i] || after.white[i] == reached.white[i]);
+        reached.white[i] |= !walls.white[i];
+    }
+    CHECK_INT(plain_label(&after, true, 4, label), g.count ? 1 + bridges.stranded : 0);
+    plain_label(&reached, true, 4, label); // rooms: no two parts of one are apart
+    int32_t rooms = 0;
+    for (int32_t i = 0; i < n; i++) {
+        if (g.label[i] < 0) continue;
+        bool first = true;
+        for (int32_t k = 0; k < i && first; k++) first = g.label[k] < 0 || label[k] != label[i];
+        rooms += first;
+    }
+    CHECK_INT(rooms, g.count ? 1 + bridges.stranded : 0);
+    int32_t steps = g.count > 1 ? steps_around(&g, &walls, greedy_smallest(&g)) : -1;
+    if (steps >= 0 && metric == JALI_METRIC_CITY_BLOCK) CHECK_INT(length_of(&bridges, 0), steps);
+    free(label);
+    plain_free(&walls);
+    plain_free(&reached);
+    plain_free(&after);
+    greedy_end(&g);
+    jali_bitmap_free(ctx, &joined);
+    jali_bridges_free(ctx, &bridges);
+}
+
+TEST(bridges_bend_around_what_is_blocked)
+{
+    uint64_t seed = 21;
+    for (int32_t i = 0; i < 1500; i++) {
+        int32_t w = 1 + (int32_t)(next_random(&seed) >> 40) % 40,
+                h = 1 + (int32_t)(next_random(&seed) >> 40) % 24;
+        jali_bitmap a = random_bitmap(&seed, w, h, 1 + (int32_t)(next_random(&seed) >> 40) % 30),
+                    walls = i % 2 ? random_bitmap(&seed, w, h, 1 + (int32_t)(next_random(&seed) >> 40) % 60)
+                                  : random_blobs(&seed, w, h, 4, 30);
+        check_around(&a, &walls, JALI_METRIC_CITY_BLOCK);
+        check_around(&a, &walls, JALI_METRIC_OCTAGON);
+        jali_bitmap_free(ctx, &a);
+        jali_bitmap_free(ctx, &walls);
+    }
+}
+
+// Farther than the first window.
+TEST(a_long_way_round_is_found_and_a_room_without_a_door_is_not)
+{
+    jali_bitmap a, walls;
+    jali_connect_options opt = {.metric = JALI_METRIC_OCTAGON, .blocked = &walls};
+    jali_bridges bridges;
+    CHECK_OK(jali_bitmap_create(ctx, 700, 300, &a));
+    CHECK_OK(jali_bitmap_create(ctx, 700, 300, &walls));
+    jali_bitmap_set(&a, 10, 10, true);
+    jali_bitmap_set(&a, 30, 10, true);
+    for (int32_t y = 0; y < 290; y++) jali_bitmap_set(&walls, 20, y, true);
+    jali_bitmap joined;
+    CHECK_OK(jali_connect(ctx, &a, &opt, &joined, &bridges));
+    CHECK_INT(bridges.count, 1);
+    CHECK_INT(bridges.stranded, 0);
+    CHECK_INT(bridges.bridge[0].via_count, 2); // around the end of the wall: one corner on each side
+    CHECK_INT(bridges.via[0][1], 290);
+    CHECK_INT(bridges.via[1][1], 290);
+    jali_bitmap_free(ctx, &joined);
+    jali_bridges_free(ctx, &bridges);
+    for (int32_t y = 290; y < 300; y++) jali_bitmap_set(&walls, 20, y, true);
+    CHECK_OK(jali_connect(ctx, &a, &opt, &joined, &bridges));
+    CHECK_INT(bridges.count, 0);
+    CHECK_INT(bridges.stranded, 1);
+    CHECK(same_bitmap(&joined, &a));
+    jali_bitmap_free(ctx, &joined);
+    jali_bridges_free(ctx, &bridges);
+    jali_bitmap_free(ctx, &a);
+    jali_bitmap_free(ctx, &walls);
+}
+
+typedef struct walled {
+    jali_bitmap drawing, walls;
+} walled;
+
+static jali_status connect_around(jali_context *limited, void *data)
+{
+    const walled *w = data;
+    jali_bitmap joined;
+    jali_bridges bridges;
+    jali_connect_options opt = {.metric = JALI_METRIC_OCTAGON, .blocked = &w->walls};
+    jali_status status = jali_connect(limited, &w->drawing, &opt, &joined, &bridges);
+    if (status != JALI_OK) CHECK(joined.word == NULL && bridges.bridge == NULL && bridges.via == NULL);
+    jali_bitmap_free(limited, &joined);
+    jali_bridges_free(limited, &bridges);
+    return status;
+}
+
+TEST(every_allocation_refused_once_around_walls)
+{
+    uint64_t seed = 9;
+    walled w = {random_bitmap(&seed, 90, 60, 2), random_blobs(&seed, 90, 60, 5, 40)};
+    refuse_each_allocation(connect_around, &w);
+    jali_bitmap_free(ctx, &w.drawing);
+    jali_bitmap_free(ctx, &w.walls);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bridges_bend_around_what_is_blocked),
+        cmocka_unit_test(a_long_way_round_is_found_and_a_room_without_a_door_is_not),
+        cmocka_unit_test(every_allocation_refused_once_around_walls),
         cmocka_unit_test(every_bridge_is_the_greedy_one_on_small_pictures),
         cmocka_unit_test(every_bridge_is_the_greedy_one_across_words),
         cmocka_unit_test(every_bridge_is_the_greedy_one_far_apart),

@@ -144,7 +144,7 @@ TEST(no_rounds_change_nothing)
 
 static jali_picture grey_of(jali_context *c, const jali_bitmap *b)
 {
-    jali_picture picture = {b->width_px, b->height_px, NULL};
+    jali_picture picture = {.width_px = b->width_px, .height_px = b->height_px};
     CHECK_OK(allocate_array(c, &picture.grey, (size_t)(b->width_px * b->height_px), 1));
     for (int i = 0; i < b->width_px * b->height_px; i++)
         picture.grey[i] = jali_bitmap_get(b, i % b->width_px, i / b->width_px) ? 255 : 0;

@@ -180,7 +180,7 @@ TEST(a_laser_cuts_bars_as_they_are_drawn)
     for (int32_t i = 0; i < WIDE * HIGH; i++) grey[i] = 255;
     for (int32_t k = 0, x = 40; k < 4; x += 40 + bar[k++])
         for (int32_t y = 20; y < HIGH - 20; y++) memset(grey + y * WIDE + x, 0, (size_t)bar[k]);
-    jali_picture picture = {WIDE, HIGH, grey};
+    jali_picture picture = {.width_px = WIDE, .height_px = HIGH, .grey = grey};
     jali_options opt = jali_defaults();
     jali_result r;
     opt.place.width_mm = WIDE / 20.0;
@@ -211,7 +211,7 @@ TEST(a_mask_that_opening_leaves_alone_is_mended_too)
         noise = noise * 1664525 + 1013904223;
         grey[i] = (i < 8 ? 0x0a >> i & 1 : noise >> 31) ? 255 : 0;
     }
-    jali_picture picture = {11, 2, grey};
+    jali_picture picture = {.width_px = 11, .height_px = 2, .grey = grey};
     jali_options opt = jali_defaults();
     opt.optimise.phi_e_mm = 0;
     opt.optimise.phi_s_mm = opt.optimise.phi_v_mm = opt.optimise.epsilon_mm = 0.1;
@@ -292,7 +292,7 @@ TEST(the_judge_tells_long_tips_from_short_ones)
 
 static jali_picture grey_of(const jali_bitmap *a)
 {
-    jali_picture picture = {a->width_px, a->height_px, NULL};
+    jali_picture picture = {.width_px = a->width_px, .height_px = a->height_px};
     CHECK_OK(ALLOCATE(ctx, picture.grey, a->width_px * a->height_px));
     for (int32_t y = 0; y < a->height_px; y++)
         for (int32_t x = 0; x < a->width_px; x++)
@@ -448,7 +448,7 @@ TEST(a_picture_of_which_nothing_would_print_gets_a_sentence)
 {
     enum { W = 21, H = 7 };
     uint8_t grey[W * H];
-    jali_picture picture = {W, H, grey};
+    jali_picture picture = {.width_px = W, .height_px = H, .grey = grey};
     jali_options opt = jali_defaults();
     jali_result r;
     for (int32_t y = 0; y < H; y++)

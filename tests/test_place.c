@@ -9,7 +9,7 @@ static jali_bitmap drawing;
 
 static jali_picture random_picture(uint64_t seed, int32_t width, int32_t height, bool two_tones)
 {
-    jali_picture p = {width, height, NULL};
+    jali_picture p = {.width_px = width, .height_px = height};
     CHECK_OK(ALLOCATE(ctx, p.grey, width * height));
     for (int32_t i = 0; i < width * height; i++) {
         uint8_t grey = (uint8_t)(next_random(&seed) >> 56);
@@ -107,7 +107,7 @@ TEST(bits_beyond_the_width_are_zero)
 // A half plane stays where it is at any scale: the boundary moves by less than a working pixel.
 TEST(a_straight_edge_keeps_its_place)
 {
-    jali_picture p = {90, 40, NULL};
+    jali_picture p = {.width_px = 90, .height_px = 40};
     CHECK_OK(ALLOCATE(ctx, p.grey, 90 * 40));
     for (int32_t i = 0; i < 90 * 40; i++) {
         double covered = 37.3 - i % 90; // the edge stands at x = 37.3, anti-aliased

@@ -284,7 +284,7 @@ TEST(crop_turn_mirror_and_invert)
 
 static jali_picture greys(int32_t width, int32_t height)
 {
-    jali_picture p = {width, height, NULL};
+    jali_picture p = {.width_px = width, .height_px = height};
     CHECK_OK(ALLOCATE(ctx, p.grey, width * height));
     return p;
 }

@@ -89,7 +89,7 @@ TEST(rays_find_the_ways_across_a_void_and_no_others)
     spans found;
     make_tongue(&t, 20, 1);
     CHECK_OK(borders_create(ctx, &t.sheet, &CHART, &b));
-    CHECK_OK(find_spans(ctx, &t.sheet, &b, &t.mask, &CHART, 0.5, 4, &found));
+    CHECK_OK(find_spans(ctx, &t.sheet, &b, &t.mask, NULL, &CHART, 0.5, 4, &found));
     CHECK(found.count > 50);
     bool at_tip = false;
     for (int32_t i = 0; i < found.count; i++) {
@@ -130,7 +130,7 @@ TEST(planks_fit_between_the_borders)
     int32_t laid = 0;
     make_tongue(&t, 20, 1);
     CHECK_OK(borders_create(ctx, &t.sheet, &CHART, &b));
-    CHECK_OK(find_spans(ctx, &t.sheet, &b, &t.mask, &CHART, 0.5, 4, &found));
+    CHECK_OK(find_spans(ctx, &t.sheet, &b, &t.mask, NULL, &CHART, 0.5, 4, &found));
     double before = area_of_sheet(&t.sheet);
     for (int32_t i = 0; i < found.count; i++) {
         plank p;
@@ -205,7 +205,7 @@ TEST(beams_are_blind_to_rigid_motion)
     int32_t n = t.sheet.node_count;
     double(*u)[6] = calloc((size_t)n, sizeof *u), mode[BEAM_MODES];
     CHECK_OK(borders_create(ctx, &t.sheet, &CHART, &b));
-    CHECK_OK(find_spans(ctx, &t.sheet, &b, &t.mask, &CHART, 2, 4, &found));
+    CHECK_OK(find_spans(ctx, &t.sheet, &b, &t.mask, NULL, &CHART, 2, 4, &found));
     int32_t blind = 0;
     for (int motion = 0; motion < 6; motion++) {
         for (int32_t i = 0; i < n; i++) {

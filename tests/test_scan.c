@@ -16,7 +16,7 @@ static double uniform(uint64_t *seed, double from, double to)
 TEST(a_shrunk_picture_holds_the_mean_of_its_pixels)
 {
     uint8_t level[6] = {0, 51, 255, 255, 255, 0};
-    jali_picture picture = {3, 2, level};
+    jali_picture picture = {.width_px = 3, .height_px = 2, .grey = level};
     grey g;
     CHECK_OK(grey_of_picture(ctx, &picture, 2, &g));
     CHECK_INT(g.width, 2);
@@ -176,7 +176,7 @@ typedef struct photograph {
 // Draw what a camera would see: four by four rays a pixel, light that falls off, noise.
 static jali_picture photographed(const photograph *p, uint64_t *seed)
 {
-    jali_picture scan = {p->width, p->height, NULL};
+    jali_picture scan = {.width_px = p->width, .height_px = p->height};
     homography inverse;
     CHECK(homography_inverse(&p->map, &inverse));
     CHECK_OK(allocate_array(ctx, &scan.grey, (size_t)(p->width * p->height), 1));
@@ -280,7 +280,7 @@ TEST(what_is_not_there_is_not_found)
     enum { SIDE = 400 };
     jali_bitmap drawing = plate_drawing();
     uint64_t seed = 11;
-    jali_picture scan = {SIDE, SIDE, NULL};
+    jali_picture scan = {.width_px = SIDE, .height_px = SIDE};
     CHECK_OK(allocate_array(ctx, &scan.grey, SIDE * SIDE, 1));
     for (int kind = 0; kind < 3; kind++) {
         for (int i = 0; i < SIDE * SIDE; i++)
@@ -325,7 +325,7 @@ static jali_status find_all(jali_context *limited, void *data)
     (void)data;
     jali_bitmap drawing = {0};
     uint8_t level[32 * 24];
-    jali_picture scan = {32, 24, level};
+    jali_picture scan = {.width_px = 32, .height_px = 24, .grey = level};
     grey straight = {0}, drawn = {0};
     alignment a;
     for (int i = 0; i < 32 * 24; i++)

@@ -154,7 +154,8 @@ static void plain_scan_free(plain_scan *s)
 static jali_picture turned(const jali_picture *p, int32_t quarters, bool flip)
 {
     bool wide = quarters % 2;
-    jali_picture t = {wide ? p->height_px : p->width_px, wide ? p->width_px : p->height_px, NULL};
+    jali_picture t = {.width_px = wide ? p->height_px : p->width_px,
+                      .height_px = wide ? p->width_px : p->height_px};
     t.grey = malloc((size_t)p->width_px * (size_t)p->height_px);
     for (int32_t y = 0; y < p->height_px; y++)
         for (int32_t x = 0; x < p->width_px; x++) {
@@ -208,7 +209,7 @@ TEST(with_dpi_a_print_that_shrank_is_told)
 
 static jali_picture shrunk(const jali_picture *p, int32_t k)
 {
-    jali_picture t = {p->width_px / k, p->height_px / k, NULL};
+    jali_picture t = {.width_px = p->width_px / k, .height_px = p->height_px / k};
     t.grey = malloc((size_t)t.width_px * (size_t)t.height_px);
     for (int32_t y = 0; y < t.height_px; y++)
         for (int32_t x = 0; x < t.width_px; x++) {
@@ -222,7 +223,7 @@ static jali_picture shrunk(const jali_picture *p, int32_t k)
 
 static jali_picture plain_grey(int32_t width, int32_t height, int32_t level, int32_t noise)
 {
-    jali_picture p = {width, height, malloc((size_t)width * (size_t)height)};
+    jali_picture p = {.width_px = width, .height_px = height, .grey = malloc((size_t)width * (size_t)height)};
     uint64_t seed = 3;
     for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
         p.grey[i] = (uint8_t)(level + (noise ? (int32_t)(next_random(&seed) >> 33) % noise : 0));
@@ -374,7 +375,8 @@ TEST(what_predict_prints_comes_back_as_the_profile)
         CHECK_OK(jali_reference_create(ctx, &mask, &opt, &reference));
         CHECK_OK(jali_predict(ctx, &reference, &mask, 0, false, &opt, &print));
         int32_t k = SHRINK * print.printed.width_px / mask.width_px;
-        jali_picture picture = {print.printed.width_px / k, print.printed.height_px / k, NULL};
+        jali_picture picture = {.width_px = print.printed.width_px / k,
+                                .height_px = print.printed.height_px / k};
         picture.grey = malloc((size_t)picture.width_px * (size_t)picture.height_px);
         for (int32_t y = 0; y < picture.height_px; y++)
             for (int32_t x = 0; x < picture.width_px; x++) {

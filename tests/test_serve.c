@@ -297,6 +297,31 @@ TEST(a_profile_is_read_as_the_command_line_reads_it)
     end_job(&page, id, "failed", 2, "jali read does not make errors.png");
 }
 
+TEST(a_job_takes_edits_and_gives_bridges)
+{
+    char id[64];
+    start_job(&page,
+              "\"verb\": \"adapt\", \"options\": {\"width\": 20, \"no-predict\": true}, \"edits\": "
+              "{\"version\": 1, \"size\": [1, 1], \"edits\": [{\"kind\": \"bridge\", \"points\": [[0.5, "
+              "0.5], [0.5, "
+              "1]]}]}, \"files\": [\"figures.json\", \"bridges.json\"]",
+              id);
+    end_job(&page, id, "done", 0, "bridges.json");
+    reply r = file_of(&page, id, "figures.json");
+    CHECK(strstr(r.body, "\"edits\": {") && strstr(r.body, "\"forbidden\": 0"));
+    reply_free(&r);
+    r = file_of(&page, id, "bridges.json");
+    CHECK(strstr(r.body, "\"version\": 1") && strstr(r.body, "\"size\""));
+    reply_free(&r);
+    start_job(&page, "\"edits\": {\"version\": 1, \"size\": 3}, \"files\": [\"mask.png\"]", id);
+    end_job(&page, id, "failed", 4, "edits.json has no \\\"size\\\"");
+    start_job(&page, "\"options\": {\"edits\": \"/etc/passwd\"}, \"files\": [\"mask.png\"]", id);
+    end_job(&page, id, "failed", 1, "opens no files");
+    r = ask_job(&page, "\"edits\": [], \"files\": [\"mask.png\"]");
+    CHECK(r.status == 400 && strstr(r.body, "is an object"));
+    reply_free(&r);
+}
+
 TEST(a_job_fails_as_the_command_line_does)
 {
     char id[64], text[64];
@@ -723,6 +748,7 @@ int main(void)
         cmocka_unit_test(from_upload_to_a_solid_with_the_figures_of_the_command_line),
         cmocka_unit_test(a_file_is_waited_for),
         cmocka_unit_test(a_surface_is_there_to_lay_pictures_on),
+        cmocka_unit_test(a_job_takes_edits_and_gives_bridges),
         cmocka_unit_test(a_mesh_is_carved_and_a_printer_is_named_or_given),
         cmocka_unit_test(a_picture_is_read_and_an_upload_comes_back),
         cmocka_unit_test(a_profile_is_read_as_the_command_line_reads_it),

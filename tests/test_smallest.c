@@ -131,7 +131,7 @@ TEST(bridges_are_no_loss)
 // Upright stripes from border to border, as wide as the gaps between them.
 static jali_picture stripes(int32_t side, int32_t pitch)
 {
-    jali_picture p = {side, side, NULL};
+    jali_picture p = {.width_px = side, .height_px = side};
     CHECK_OK(ALLOCATE(ctx, p.grey, side * side));
     for (int32_t i = 0; i < side * side; i++) p.grey[i] = i % side % pitch < pitch / 2 ? 255 : 0;
     return p;

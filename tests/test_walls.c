@@ -133,7 +133,7 @@ TEST(leaning_sides_are_read_but_not_the_edge_they_meet_in)
 TEST(carved_plates_keep_the_widths_asked_for)
 {
     for (int32_t round = 0; round < 3; round++) {
-        jali_picture picture = {300, 300, malloc(300 * 300)};
+        jali_picture picture = {.width_px = 300, .height_px = 300, .grey = malloc(300 * 300)};
         jali_bitmap drawing;
         jali_options opt = jali_defaults();
         jali_result made;

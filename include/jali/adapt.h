@@ -27,6 +27,10 @@ typedef struct jali_adapt_options {
                                           // each call need not again. NULL (default): it does
     int32_t growth_px; // omega_c: what the printer adds to a solid's width, plus 1; odd; < 0: it takes away
                        // (default 1)
+    // What was laid down by hand (jali/edits.h); NULL (default): nothing
+    const jali_bitmap *fixed;  // pixels that prune and finish leave as `kept` has them
+    const jali_bitmap *kept;   // their tones
+    const jali_bitmap *closed; // black pixels that no stroke of a bridge covers
     // jali_adapt_print alone:
     double axis_worth_white; // what a lost pixel of a detail's axis weighs, as a share of the narrowest
                              // width, 0 to
@@ -107,6 +111,7 @@ JALI_API jali_status jali_adapt_smooth(jali_context *ctx, const jali_adapt_optio
 /// a tree; of the trees that hold the largest piece, the one is kept that gains most: what its pieces save in
 /// wrong pixels and lost axes less what its bridges cost (the prize-collecting problem, exact on a tree).
 ///   in     bridges   what jali_connect gives for this print
+///          opt       a piece with a white pixel that is fixed stays
 ///   in,out print
 ///   out    dropped   pieces removed
 JALI_API jali_status jali_adapt_prune(jali_context *ctx, const jali_bitmap *drawing,
@@ -122,8 +127,24 @@ JALI_API jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_option
                                       jali_bitmap *mask, jali_bitmap *cores);
 
 /// Paint the bridges between cores solid_px wide, then fill voids narrower than void_px.
-JALI_API jali_status jali_adapt_lay(jali_context *ctx, const jali_bridges *bridges,
-                                    const jali_adapt_options *opt, jali_bitmap *mask);
+///   inout  bridges   `pixels` of each
+JALI_API jali_status jali_adapt_lay(jali_context *ctx, jali_bridges *bridges, const jali_adapt_options *opt,
+                                    jali_bitmap *mask);
+
+/// Paint bridges as wide as the printer needs in the mask (solid_px), or as they come out in the print.
+///   inout  bridges   `pixels` of each
+JALI_API jali_status jali_adapt_strokes(jali_context *ctx, jali_bridges *bridges,
+                                        const jali_adapt_options *opt, bool in_print, jali_bitmap *dst);
+
+/// Where a bridge may not run, because its stroke would cover a black pixel that is closed.
+///   in     picture   a mask, or a print
+///   out    blocked   a new bitmap, for jali_connect
+JALI_API jali_status jali_adapt_blocked(jali_context *ctx, const jali_adapt_options *opt, bool in_print,
+                                        const jali_bitmap *picture, jali_bitmap *blocked);
+
+/// Take some cores off a mask, with all around them that the others do not need.
+JALI_API jali_status jali_adapt_take_off(jali_context *ctx, const jali_bitmap *off, const jali_bitmap *others,
+                                         const jali_adapt_options *opt, jali_bitmap *mask);
 
 #ifdef __cplusplus
 }

@@ -27,6 +27,7 @@
 #include <jali/compensate.h>
 #include <jali/connect.h>
 #include <jali/contours.h>
+#include <jali/edits.h>
 #include <jali/lower.h>
 #include <jali/map.h>
 #include <jali/mesh.h>

@@ -5,6 +5,7 @@
 #include <jali/adapt.h>
 #include <jali/bridges.h>
 #include <jali/chart.h>
+#include <jali/edits.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,7 +22,9 @@ typedef struct jali_optimise_options {
     double detail;         // weight of fine detail against wrong pixels, 0 to 100; times jali_adapt_options'
                            // axis_worth of both tones (1)
     bool mark_bridges;     // keep bridge_mask (false)
-    bool details;          // keep the details and conflicts for overlays and counts (costs a third more time)
+    const jali_edits *edits; // what was laid down by hand, after jali_edits_follow: bridges drawn, places
+                             // where none may run, regions that stay as they are; NULL (default): nothing
+    bool details; // keep the details and conflicts for overlays and counts (costs a third more time)
 } jali_optimise_options;
 
 JALI_API jali_optimise_options jali_optimise_defaults(void);
@@ -32,15 +35,28 @@ typedef struct jali_round {
     int32_t conflicts;                            // regions
 } jali_round;
 
+/// What came of the edits by hand.
+typedef struct jali_edited {
+    int32_t count[JALI_EDIT_KINDS]; // of each kind
+    int32_t left_out; // parts that no bridge may reach: taken off, the mask is one piece without them
+    int32_t loose;    // parts that no bridge may reach and that are locked or drawn: they stay
+    int32_t left_out_at[2], loose_at[2]; // a pixel of the first of them
+    int32_t locked_details;              // of the residual's types A and B, those that touch what is locked
+} jali_edited;
+
 typedef struct jali_optimised {
-    jali_bitmap mask;      // what to carve: one 4-connected piece, nothing below the widths
+    jali_bitmap mask; // what to carve: one 4-connected piece, nothing below the widths; what is locked by
+                      // hand may break either
     int32_t kernels_px[3]; // omega_c, omega_w, omega_b as used
     int32_t bridges, pieces_dropped;
     int64_t bridge_pixels;
     int32_t round_count;
     jali_round *round;   // [round_count]
-    jali_round residual; // details left in the mask: types A and B are zero
-    bool cycled;         // the paper's rounds came back to an earlier picture and were stopped
+    jali_round residual; // details left in the mask: types A and B are zero, but for what is locked
+    jali_bridges laid;   // the bridges that the finish laid and what strengthens it, with the pixels of each;
+                         // those that made none white are left out, and so are drawn ones
+    jali_edited edited;
+    bool cycled; // the paper's rounds came back to an earlier picture and were stopped
     // With `details`, for overlays; bridge_mask with `mark_bridges` alone as well:
     jali_details white, black; // of the first round
     jali_bitmap conflict;
@@ -62,20 +78,28 @@ JALI_API void jali_paper_kernels(double phi_e_mm, double phi_s_mm, double phi_v_
 JALI_API jali_status jali_optimise(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,
                                    const jali_optimise_options *opt, jali_optimised *result);
 
+/// Where no more bridges may run for what was forbidden or locked by hand.
+///   in     opt       as the mask was made with
+///   out    blocked   on the mask's grid; an empty bitmap when there are no edits
+///   fails  JALI_BAD_VALUE, JALI_NO_MEMORY, JALI_LIMIT, JALI_CANCELLED
+JALI_API jali_status jali_optimise_blocked(jali_context *ctx, const jali_chart *chart,
+                                           const jali_optimise_options *opt, const jali_optimised *result,
+                                           jali_bitmap *blocked);
+
 /// Lay more bridges into a result's mask, by the same rules: as wide as the printer needs, and what voids
 /// beside them become too narrow is filled.
-///   in     bridges   from and to are pixels of the mask
-///          opt       as the mask was made with
-///   inout  result    mask, residual, bridges, bridge_pixels, bridge_mask; the mask only ever gains solid
-///   fails  JALI_BAD_VALUE, JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT; the mask may then have gained some of
-///   it
+///   in     bridges   straight; from and to are pixels of the mask
+///          opt       as the mask was made with; a bridge that would cross what is forbidden is not laid
+///   inout  result    mask, residual, laid, bridges, bridge_pixels, bridge_mask; the mask only ever gains
+///   solid fails  JALI_BAD_VALUE, JALI_NO_MEMORY, JALI_CANCELLED, JALI_LIMIT; the mask may then have gained
+///   some of it
 JALI_API jali_status jali_optimise_add(jali_context *ctx, const jali_bridges *bridges,
                                        const jali_chart *chart, const jali_optimise_options *opt,
                                        jali_optimised *result);
 
 /// Mend a mask that something else has drawn, by the finish's rules: thin solid is taken off, pieces are
 /// joined as wide as the printer needs, voids that are too narrow are filled.
-///   in     opt       as jali_optimise
+///   in     opt       as jali_optimise; what is locked stays as the mask has it
 ///   inout  mask
 ///   out    residual  details left: types A and B are zero
 ///   fails  as jali_optimise; the mask is then in between

@@ -11,7 +11,8 @@ extern "C" {
 /// Grey levels, 0 = black .. 255 = white. {0} is valid and empty. Row 0 is the top row.
 typedef struct jali_picture {
     int32_t width_px, height_px;
-    uint8_t *grey; // [height_px * width_px]
+    uint8_t *grey;      // [height_px * width_px]
+    int32_t file_px[2]; // width and height before crop and turn; 0 when it was not read from a file
 } jali_picture;
 
 JALI_API void jali_picture_free(jali_context *ctx, jali_picture *picture);

@@ -18,12 +18,13 @@ typedef enum jali_reinforcing {
 
 typedef struct jali_reinforce_options {
     jali_reinforcing rule;
-    double limit_mpa;     // the largest stress (mean, see jali_analysis) to allow, > 0 (10)
-    double phi_s_mm;      // width of a connector, > 0 (0.3)
-    double phi_v_mm;      // narrowest void between two of them, > 0 (0.5)
-    double longest_mm;    // the longest connector; 0 (default) = a third of the picture's shorter side
-    int32_t most_at_once; // connectors a round, 1 .. 64 (16)
-    int32_t most_rounds;  // 1 .. 1000 (16)
+    double limit_mpa;           // the largest stress (mean, see jali_analysis) to allow, > 0 (10)
+    double phi_s_mm;            // width of a connector, > 0 (0.3)
+    double phi_v_mm;            // narrowest void between two of them, > 0 (0.5)
+    double longest_mm;          // the longest connector; 0 (default) = a third of the picture's shorter side
+    const jali_bitmap *blocked; // pixels of the mask over which no connector may run; NULL (default): none
+    int32_t most_at_once;       // connectors a round, 1 .. 64 (16)
+    int32_t most_rounds;        // 1 .. 1000 (16)
 } jali_reinforce_options;
 
 JALI_API jali_reinforce_options jali_reinforce_defaults(void);

@@ -6,7 +6,7 @@
 // types A and B), so the number of black pixels falls until nothing changes. What is left is type C. Dead
 // ends: taking off in every round does not end, for a filled void can be too thin for the solid's element and
 // the two undo each other for ever; thickening the tips too floods (recall of black 80 -> 76 %, 20 rounds).
-#include "adapt/widths.h"
+#include "adapt/hand.h"
 #include "base/base.h"
 
 // Whether the patch, set on (0, 0), covers (dx, dy).
@@ -42,7 +42,8 @@ static void move_inside(const jali_bitmap *mask, const field *e, int32_t at[2])
     at[1] = MAX(MIN(at[1], mask->height_px - e->below - 1), MIN(e->above, mask->height_px / 2));
 }
 
-// Cover the details of types A and B: an element at each. What it leaves of a long one comes next round.
+// Cover the details of types A and B: an element at each. What it leaves of a long one comes next round. What
+// is fixed is left as it is.
 static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *opt, const field *e,
                                    jali_bitmap *mask)
 {
@@ -51,6 +52,7 @@ static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *
     jali_status status;
     TRY(jali_adapt_details(ctx, mask, true, opt, &thin));
     for (int32_t type = JALI_TYPE_A; type <= JALI_TYPE_B; type++) {
+        if (opt->fixed) combine(ctx, RULE_AND_NOT, &thin.type[type], opt->fixed, &thin.type[type]);
         TRY(label_components(ctx, &thin.type[type], true, 8, &c));
         for (int32_t y = 0, next = 0; y < c.height_px; y++)
             for (int32_t i = c.first[y]; i < c.first[y + 1]; i++) {
@@ -63,6 +65,7 @@ static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *
             }
         components_free(ctx, &c);
     }
+    put_back(opt, mask);
 done:
     jali_details_free(ctx, &thin);
     components_free(ctx, &c);
@@ -96,6 +99,7 @@ jali_status jali_adapt_cores(jali_context *ctx, const jali_adapt_options *opt, b
     if (thicken) TRY(thicken_details(ctx, opt, &w.solid, mask));
     TRY(field_erode(ctx, mask, &w.solid, opt->outside_solid, cores));
     if (!thicken) TRY(field_dilate(ctx, cores, &w.solid, false, mask));
+    put_back(opt, mask);
     TRY(merge_near(ctx, &w.near, cores));
 done:
     if (status != JALI_OK) jali_bitmap_free(ctx, cores);
@@ -103,17 +107,25 @@ done:
     return status;
 }
 
-jali_status jali_adapt_lay(jali_context *ctx, const jali_bridges *bridges, const jali_adapt_options *opt,
+// What was black and is closed is black again.
+static void clear_closed(const jali_adapt_options *opt, const jali_bitmap *before, jali_bitmap *mask)
+{
+    for (int64_t i = 0; i < mask->stride * mask->height_px; i++)
+        mask->word[i] &= ~opt->closed->word[i] | before->word[i];
+}
+
+jali_status jali_adapt_lay(jali_context *ctx, jali_bridges *bridges, const jali_adapt_options *opt,
                            jali_bitmap *mask)
 {
     jali_status status;
     widths w = {0};
     jali_bitmap scratch = {0};
     TRY(mask_widths(ctx, opt, mask, 0, &w));
-    TRY(jali_bitmap_create(ctx, mask->width_px, mask->height_px, &scratch));
-    for (int32_t i = 0; i < bridges->count; i++)
-        paint_stroke(mask, bridges->bridge[i].from, bridges->bridge[i].to, &w.solid, true);
+    TRY(jali_bitmap_copy(ctx, mask, &scratch));
+    TRY(jali_adapt_strokes(ctx, bridges, opt, false, mask));
+    if (opt->closed) clear_closed(opt, &scratch, mask);
     TRY(field_close(ctx, mask, &w.hollow, opt->outside_solid, &scratch, mask));
+    put_back(opt, mask);
 done:
     jali_bitmap_free(ctx, &scratch);
     widths_free(ctx, &w);

@@ -11,6 +11,9 @@
 // At 1 the sky of islands.png loses two thirds of its stars, and the recall of white over 24 runs two points.
 enum { PRIZE = 3 };
 
+// More than all the pixels of a picture, and a million times that is a number yet.
+static const int64_t BEYOND_PRICE = INT64_C(1) << 42;
+
 typedef struct piece_tree {
     components c;
     int64_t *value; // [c.count], the piece's prize, then its subtree's
@@ -68,15 +71,27 @@ static void weigh_pieces(const jali_bitmap *drawing, const jali_bitmap *axis, co
 static void weigh_bridges(const jali_bitmap *drawing, const jali_bitmap *print, const jali_bridges *bridges,
                           const field *solid, piece_tree *t)
 {
+    int32_t from[2], to[2];
     for (int32_t i = 0; i < bridges->count; i++) {
-        line_walk walk = walk_line(bridges->bridge[i].from, bridges->bridge[i].to);
-        while (walk_on(&walk)) {
-            if (jali_bitmap_get(print, walk.x, walk.y)) continue;
-            int32_t width_px = patch_at(solid, walk.x, walk.y)->size;
-            t->cost[i] += WRONG_UNITS * (jali_bitmap_get(drawing, walk.x, walk.y) ? -width_px : width_px);
+        for (int32_t leg = 0; jali_bridge_leg(bridges, i, leg, from, to); leg++) {
+            line_walk walk = walk_line(from, to);
+            while (walk_on(&walk)) {
+                if (jali_bitmap_get(print, walk.x, walk.y)) continue;
+                int32_t width_px = patch_at(solid, walk.x, walk.y)->size;
+                t->cost[i] += WRONG_UNITS * (jali_bitmap_get(drawing, walk.x, walk.y) ? -width_px : width_px);
+            }
         }
         t->cost[i] = MAX(t->cost[i], 0);
     }
+}
+
+// A piece with a white pixel that is fixed is worth any bridge.
+static void prize_fixed(const jali_bitmap *fixed, piece_tree *t)
+{
+    for (int32_t y = 0; y < t->c.height_px; y++)
+        for (int32_t i = t->c.first[y]; i < t->c.first[y + 1]; i++)
+            if (count_run(fixed, y, t->c.span[i][0], t->c.span[i][1]) > 0)
+                t->value[t->c.label[i]] = BEYOND_PRICE;
 }
 
 static int32_t largest_piece(const components *c, const int64_t *area)
@@ -130,6 +145,7 @@ jali_status jali_adapt_prune(jali_context *ctx, const jali_bitmap *drawing, cons
     TRY(build_tree(ctx, print, bridges, &t));
     TRY(component_areas(ctx, &t.c, &area));
     weigh_pieces(drawing, &axis, opt, &w, &t);
+    if (opt->fixed) prize_fixed(opt->fixed, &t);
     weigh_bridges(drawing, print, bridges, &w.solid, &t);
     prune_tree(bridges, largest_piece(&t.c, area), &t);
     for (int32_t i = 0; i < t.c.count; i++) *dropped += !t.kept[i];

@@ -6,6 +6,7 @@
 // of
 //          small pictures.
 #include <jali/connect.h>
+#include "connect/detour.h"
 #include "connect/search.h"
 #include "base/base.h"
 
@@ -17,6 +18,7 @@ jali_connect_options jali_connect_defaults(void)
 void jali_bridges_free(jali_context *ctx, jali_bridges *bridges)
 {
     release(ctx, bridges->bridge);
+    release(ctx, bridges->via);
     *bridges = (jali_bridges){0};
 }
 
@@ -24,7 +26,9 @@ typedef struct joining {
     jali_bitmap *solid;
     parts p;
     search s;
-    int64_t pixels;
+    detour d;
+    jali_bridges laid;
+    size_t capacity, via_capacity;
 } joining;
 
 // Join the part with the one that holds the white pixel (x, y).
@@ -56,18 +60,70 @@ static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32
     jali_status status = part_add_pixel(ctx, &j->p, *root, label, x, y);
     if (status != JALI_OK) return status;
     jali_bitmap_set(j->solid, x, y, true);
-    j->pixels++;
+    j->laid.pixels++;
     *root = unite_neighbours(j, *root, x, y);
     return JALI_OK;
 }
 
-// |dx| + |dy| - 1 pixels between the ends.
-static jali_status lay_path(jali_context *ctx, joining *j, int32_t root, const jali_bridge *bridge)
+// |dx| + |dy| - 1 pixels between the ends of each leg.
+static jali_status lay_path(jali_context *ctx, joining *j, int32_t root, int32_t bridge)
 {
     jali_status status;
-    line_walk walk = walk_line(bridge->from, bridge->to);
-    while (walk_on(&walk)) TRY(lay_pixel(ctx, j, &root, bridge->part[0], walk.x, walk.y));
+    int32_t from[2], to[2], label = j->laid.bridge[bridge].part[0];
+    for (int32_t leg = 0; jali_bridge_leg(&j->laid, bridge, leg, from, to); leg++) {
+        line_walk walk = walk_line(from, to);
+        while (walk_on(&walk)) TRY(lay_pixel(ctx, j, &root, label, walk.x, walk.y));
+    }
     TRY(queue_part(ctx, &j->p, root));
+done:
+    return status;
+}
+
+// Keep the corners of the way that was found.
+static jali_status keep_corners(jali_context *ctx, joining *j, jali_bridge *bridge)
+{
+    jali_bridges *laid = &j->laid;
+    jali_status status = GROW(ctx, laid->via, j->via_capacity, laid->via_count + j->d.corner_count);
+    if (status != JALI_OK) return status;
+    bridge->via_first = laid->via_count;
+    bridge->via_count = j->d.corner_count;
+    for (int32_t i = 0; i < j->d.corner_count; i++, laid->via_count++)
+        memcpy(laid->via[laid->via_count], j->d.corner[i], sizeof *laid->via);
+    return JALI_OK;
+}
+
+// The nearest other part, straight, or around what is blocked: no way around is shorter than one through it.
+static jali_status find_way(jali_context *ctx, joining *j, const jali_connect_options *opt, int32_t root,
+                            jali_bridge *bridge, bool *found)
+{
+    jali_status status;
+    *found = true;
+    *bridge = (jali_bridge){0};
+    TRY(nearest_other(ctx, j->solid, &j->p, root, opt->metric, &j->s, bridge));
+    if (!opt->blocked || line_is_free(j->solid, opt->blocked, bridge->from, bridge->to)) return JALI_OK;
+    TRY(find_detour(ctx, j->solid, opt->blocked, &j->p, root, opt->metric, &j->d, bridge, found));
+    if (*found) TRY(keep_corners(ctx, j, bridge));
+done:
+    return status;
+}
+
+// Give the smallest part a bridge; one that no way leads from is not asked again.
+static jali_status join_smallest(jali_context *ctx, joining *j, const jali_connect_options *opt)
+{
+    jali_status status;
+    bool found;
+    int32_t root = smallest_part(&j->p);
+    TRY(GROW(ctx, j->laid.bridge, j->capacity, j->laid.count + 1));
+    jali_bridge *bridge = &j->laid.bridge[j->laid.count];
+    TRY(find_way(ctx, j, opt, root, bridge, &found));
+    if (!found) {
+        j->laid.stranded++;
+        return JALI_OK;
+    }
+    bridge->part[0] = label_at(&j->p, bridge->from[0], bridge->from[1]);
+    bridge->part[1] = label_at(&j->p, bridge->to[0], bridge->to[1]);
+    TRY(lay_path(ctx, j, root, j->laid.count));
+    j->laid.count++;
 done:
     return status;
 }
@@ -78,39 +134,30 @@ jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing, const ja
     jali_status status;
     jali_connect_options opt = given ? *given : jali_connect_defaults();
     jali_bitmap solid = {0};
-    jali_bridges laid = {0};
-    size_t capacity = 0;
     joining j = {.solid = &solid};
     TRY(jali_bitmap_copy(ctx, drawing, &solid));
     TRY(parts_create(ctx, &solid, &j.p));
     int32_t parts_before = j.p.alive;
-    while (j.p.alive > 1) {
+    while (j.p.alive - j.laid.stranded > 1) {
         TRY(step(ctx, "connect", 1 - (double)j.p.alive / parts_before));
-        int32_t root = smallest_part(&j.p);
-        TRY(GROW(ctx, laid.bridge, capacity, laid.count + 1));
-        jali_bridge *bridge = &laid.bridge[laid.count];
-        TRY(nearest_other(ctx, &solid, &j.p, root, opt.metric, &j.s, bridge));
-        bridge->part[0] = label_at(&j.p, bridge->from[0], bridge->from[1]);
-        bridge->part[1] = label_at(&j.p, bridge->to[0], bridge->to[1]);
-        TRY(lay_path(ctx, &j, root, bridge));
-        laid.count++;
+        TRY(join_smallest(ctx, &j, &opt));
     }
-    laid.pixels = j.pixels;
     if (joined == drawing) jali_bitmap_free(ctx, joined);
     *joined = solid;
     solid = (jali_bitmap){0};
     if (bridges) {
-        *bridges = laid;
-        laid = (jali_bridges){0};
+        *bridges = j.laid;
+        j.laid = (jali_bridges){0};
     }
 done:
     if (status != JALI_OK) {
         if (joined != drawing) *joined = (jali_bitmap){0};
         if (bridges) *bridges = (jali_bridges){0};
     }
-    jali_bridges_free(ctx, &laid);
+    jali_bridges_free(ctx, &j.laid);
     jali_bitmap_free(ctx, &solid);
     parts_free(ctx, &j.p);
     search_free(ctx, &j.s);
+    detour_free(ctx, &j.d);
     return status;
 }

@@ -67,7 +67,7 @@ jali_status turn_picture(jali_context *ctx, jali_picture *picture, int32_t quart
     int64_t count = (int64_t)picture->width_px * picture->height_px;
     if (quarter_turns >= 2) reverse(picture->grey, count);
     if (quarter_turns % 2 == 0) return JALI_OK;
-    jali_picture turned = {picture->height_px, picture->width_px, NULL};
+    jali_picture turned = {.width_px = picture->height_px, .height_px = picture->width_px};
     jali_status status = ALLOCATE(ctx, turned.grey, count);
     if (status != JALI_OK) return status;
     turn_clockwise(picture, &turned);

@@ -120,14 +120,18 @@ jali_status jali_read_bytes(jali_context *ctx, const uint8_t *bytes, size_t size
     jali_status status;
     jali_read_options opt = given ? *given : jali_read_defaults();
     source from = {bytes, size, name, opt.max_px};
+    int32_t file_px[2];
     *picture = (jali_picture){0};
     TRY(check_options(ctx, &opt));
     TRY(check_type(ctx, bytes, size, name));
     TRY(type_of(bytes, size)->decode(ctx, &from, picture));
+    file_px[0] = picture->width_px;
+    file_px[1] = picture->height_px;
     TRY(crop_picture(ctx, picture, opt.crop_px));
     TRY(turn_picture(ctx, picture, opt.quarter_turns));
     if (opt.mirror) mirror_picture(picture);
     if (opt.invert) invert_picture(picture);
+    memcpy(picture->file_px, file_px, sizeof file_px);
     return JALI_OK;
 done:
     jali_picture_free(ctx, picture);

@@ -416,7 +416,8 @@ static jali_status prepare(jali_context *ctx, search *s)
     s->attached.rough = true; // what is drawn is analysed afresh
     TRY(ALLOCATE(ctx, s->u, s->sheet->node_count));
     TRY(borders_create(ctx, s->sheet, s->chart, &s->borders));
-    TRY(find_spans(ctx, s->sheet, &s->borders, s->mask, s->chart, s->opt.phi_s_mm, longest, &s->spans));
+    TRY(find_spans(ctx, s->sheet, &s->borders, s->mask, s->opt.blocked, s->chart, s->opt.phi_s_mm, longest,
+                   &s->spans));
     TRY(look(ctx, s));
 done:
     return status;

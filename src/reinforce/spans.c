@@ -109,22 +109,25 @@ int32_t border_near(const borders *b, const jali_sheet *sheet, const double at[2
 // White at a place of the chart; beyond the grid nothing can be reached.
 typedef enum ground { VOID_GROUND, SOLID_GROUND, NO_GROUND } ground;
 
-static ground ground_at(const jali_bitmap *mask, const jali_chart *chart, const double at[2])
+static ground ground_at(const jali_bitmap *mask, const jali_bitmap *blocked, const jali_chart *chart,
+                        const double at[2])
 {
     int32_t x = (int32_t)floor(at[0] / chart->pixel_units),
             y = chart->height_px - 1 - (int32_t)floor(at[1] / chart->pixel_units);
     if (x < 0 || y < 0 || x >= mask->width_px || y >= mask->height_px) return NO_GROUND;
-    return jali_bitmap_get(mask, x, y) ? SOLID_GROUND : VOID_GROUND;
+    if (jali_bitmap_get(mask, x, y)) return SOLID_GROUND;
+    return blocked && jali_bitmap_get(blocked, x, y) ? NO_GROUND : VOID_GROUND;
 }
 
 // Where a ray from a border node meets solid again: its border node there, or -1.
 static int32_t cast(const jali_sheet *sheet, const borders *b, const jali_bitmap *mask,
-                    const jali_chart *chart, int32_t from, const double along[2], double longest_px)
+                    const jali_bitmap *blocked, const jali_chart *chart, int32_t from, const double along[2],
+                    double longest_px)
 {
     double at[2], px = chart->pixel_units;
     for (double s = 1; s <= longest_px; s += 0.5) {
         for (int k = 0; k < 2; k++) at[k] = sheet->at[from][k] + s * px * along[k];
-        ground g = ground_at(mask, chart, at);
+        ground g = ground_at(mask, blocked, chart, at);
         if (g == NO_GROUND || (g == SOLID_GROUND && s < 2)) return -1;
         if (g == SOLID_GROUND) return border_near(b, sheet, at, 3 * px);
     }
@@ -143,15 +146,15 @@ static bool outward(const jali_sheet *sheet, const borders *b, int32_t i, double
 }
 
 static jali_status spans_from(jali_context *ctx, const jali_sheet *sheet, const borders *b,
-                              const jali_bitmap *mask, const jali_chart *chart, int32_t from,
-                              double longest_mm, spans *found)
+                              const jali_bitmap *mask, const jali_bitmap *blocked, const jali_chart *chart,
+                              int32_t from, double longest_mm, spans *found)
 {
     double out[2];
     double longest_px = 4 * longest_mm / jali_chart_pixel_mm(chart); // stretched at most four times
     if (!outward(sheet, b, from, out)) return JALI_OK;
     for (int i = 0; i < RAYS; i++) {
         double c = cos(SLANT[i]), s = sin(SLANT[i]);
-        int32_t to = cast(sheet, b, mask, chart, from,
+        int32_t to = cast(sheet, b, mask, blocked, chart, from,
                           (double[]){c * out[0] - s * out[1], s * out[0] + c * out[1]}, longest_px);
         if (to < 0 || to == from || to == b->next[from] || to == b->last[from]) continue;
         double length = distance(sheet->node[from], sheet->node[to]);
@@ -164,7 +167,8 @@ static jali_status spans_from(jali_context *ctx, const jali_sheet *sheet, const 
 }
 
 jali_status find_spans(jali_context *ctx, const jali_sheet *sheet, const borders *b, const jali_bitmap *mask,
-                       const jali_chart *chart, double apart_mm, double longest_mm, spans *found)
+                       const jali_bitmap *blocked, const jali_chart *chart, double apart_mm,
+                       double longest_mm, spans *found)
 {
     jali_status status;
     uint8_t *done_with = NULL;
@@ -177,7 +181,7 @@ jali_status find_spans(jali_context *ctx, const jali_sheet *sheet, const borders
         do { // along the loop
             done_with[i] = 1;
             if (since >= apart_mm) {
-                TRY(spans_from(ctx, sheet, b, mask, chart, i, longest_mm, found));
+                TRY(spans_from(ctx, sheet, b, mask, blocked, chart, i, longest_mm, found));
                 since = 0;
             }
             int32_t next = b->next[i];

@@ -37,8 +37,10 @@ typedef struct spans {
 
 /// All spans that a fan of rays finds from border nodes some way apart.
 ///   in     apart_mm, longest_mm
+///          blocked   void pixels that no span crosses; NULL: none
 ///   out    found   widths are 0; release found->span
 jali_status find_spans(jali_context *ctx, const jali_sheet *sheet, const borders *b, const jali_bitmap *mask,
-                       const jali_chart *chart, double apart_mm, double longest_mm, spans *found);
+                       const jali_bitmap *blocked, const jali_chart *chart, double apart_mm,
+                       double longest_mm, spans *found);
 
 #endif
