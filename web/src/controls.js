@@ -18,7 +18,7 @@ function thumbnail(name) {
 function gallery(lists) {
     const root = make("div", { class: "gallery", role: "group", "aria-label": text("samples") },
         lists.samples.map(({ name, what }) => make("button", { type: "button", title: what, "data-sample": name,
-            onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "" }) }, thumbnail(name), name)));
+            onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "", edits: "" }) }, thumbnail(name), name)));
     onUpdate((s) => {
         for (const button of root.children) button.setAttribute("aria-pressed", String(button.dataset.sample === s.sample));
     });

@@ -43,7 +43,7 @@ export async function taken(file) {
     if (has(PROFILES, file.name)) return readProfile(file);
     if (has(MODELS, file.name)) return { surface: "mesh", mesh: await api.upload(file), meshName: file.name, at: "", dir: "" };
     const svg = file.type === "image/svg+xml" || has(".svg", file.name);
-    return { sample: "", upload: await api.upload(svg ? await drawn(file) : file), uploadName: file.name, crop: "" };
+    return { sample: "", upload: await api.upload(svg ? await drawn(file) : file), uploadName: file.name, crop: "", edits: "" };
 }
 
 /** A small sample to show in the gallery, as a URL. */

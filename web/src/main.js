@@ -6,6 +6,7 @@
 import * as api from "./api.js";
 import { showControls } from "./controls.js";
 import { Crop } from "./crop.js";
+import { Edit } from "./edit.js";
 import { updateFields } from "./fields.js";
 import { greyOf, levelsOf, listenForFiles, pictureOf, taken } from "./files.js";
 import { showLevels, showThreshold } from "./levels.js";
@@ -22,12 +23,13 @@ import { SolidView } from "./solid-view.js";
 import { canRedo, canUndo, change, commandLine, job, onChange, readAddress, redo, state, undo } from "./state.js";
 import { fillWords, language, setLanguage, text } from "./strings.js";
 
-const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "bridges.png", "lost.png", "conflicts.png", "print.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
+const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "bridges.json", "bridges.png", "lost.png", "conflicts.png", "print.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
 const PREVIEW_AFTER_MS = 25, LEVELS_AFTER_MS = 60, WHOLE_AFTER_MS = 350;
 const $ = (id) => document.getElementById(id);
 
 const stage = $("stage");
 const pictureView = new PictureView(stage, $("legend"), $("bar"));
+const edit = new Edit(pictureView, $("bar"), (key, values) => say(key, values));
 const solidView = new SolidView(stage, (layer) => bytesOf(last.id, `${layer}.bin`));
 const crop = new Crop(stage, (part) => change({ crop: part }), (hadFocus) => { selectView("picture"); if (hadFocus) $("crop").focus(); });
 const placing = new Placing(solidView, { skin, size: sizeNow, picture: () => pictureView.before, found: () => figures?.place?.centre_mm });
@@ -53,8 +55,10 @@ function fail(error) {
 // --- Runs
 
 async function showPictures(id, signal) {
+    const bridges = api.file(id, "bridges.json", signal).then((answer) => answer.json());
     const [input, mask] = await Promise.all(["input.png", "mask.png"].map((name) => bitmapOf(id, name, signal)));
     pictureView.show({ input, mask, layer: (name) => bitmapOf(id, name) });
+    edit.show(await bridges);
 }
 
 async function first(signal) {
@@ -176,7 +180,7 @@ function selectView(name) {
         tab.tabIndex = kind === name ? 0 : -1;
     }
     pictureView.root.hidden = name !== "picture";
-    $("legend").hidden = pictureView.chooser.hidden = name !== "picture";
+    $("legend").hidden = pictureView.chooser.hidden = edit.toggle.hidden = name !== "picture";
     solidView.root.hidden = name !== "solid";
     if (name === "solid") solidView.resize();
     else pictureView.draw();
@@ -185,6 +189,7 @@ function selectView(name) {
 function showWords() {
     fillWords(document);
     pictureView.words();
+    edit.words();
     solidView.words();
     placing.words();
     showControls($("controls"), lists, { take: (file) => takeFile(file).catch(fail), openCrop: () => openCrop().catch(fail) });
@@ -228,6 +233,7 @@ function listen() {
         updateFields();
         placing.refresh();
         smallest.refresh().catch(fail);
+        edit.draw();
         $("undo").disabled = !canUndo();
         $("redo").disabled = !canRedo();
         begin();

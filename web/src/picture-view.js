@@ -86,6 +86,13 @@ export class PictureView {
         this.draw();
     }
 
+    /** Where the picture lies on the stage, in its pixels. */
+    frame() {
+        const { clientWidth: width, clientHeight: height } = this.root, { width: w, height: h } = this.before ?? { width: 1, height: 1 };
+        const fit = 0.94 * Math.min(width / w, height / h) * this.view.scale;
+        return { left: (width - w * fit) / 2 + this.view.x, top: (height - h * fit) / 2 + this.view.y, width: w * fit, height: h * fit, fit };
+    }
+
     setSplit(share) {
         this.split = share;
         this.handle.value = Math.round(share * 100);
@@ -139,11 +146,10 @@ export class PictureView {
         this.canvas.height = height * ratio;
         if (!this.before) return;
         const context = this.canvas.getContext("2d");
-        const fit = 0.94 * Math.min(width / this.before.width, height / this.before.height) * this.view.scale;
-        const left = (width - this.before.width * fit) / 2 + this.view.x, top = (height - this.before.height * fit) / 2 + this.view.y;
+        const { left, top, fit, ...size } = this.frame();
         context.scale(ratio, ratio);
         context.imageSmoothingEnabled = fit * ratio < 2;
-        const place = [left, top, this.before.width * fit, this.before.height * fit];
+        const place = [left, top, size.width, size.height];
         const edge = this.split * width;
         for (const [picture, from, to] of [[this.before, 0, edge], [this.after, edge, width]]) {
             context.save();
@@ -154,6 +160,7 @@ export class PictureView {
             context.restore();
         }
         if (this.split > 0 && this.split < 1) this.drawHandle(context, edge, height);
+        this.onDraw?.();
     }
 
     drawHandle(context, x, height) {

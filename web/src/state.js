@@ -1,10 +1,15 @@
 // What the user has chosen: one plain object, its history, and its form in the address.
 
+import { editsOf, jsonOf } from "./edits.js";
+
+const MOST_ADDRESS_CHARACTERS = 1500; // of edits: longer ones stay in the state and in project files
+
 export const DEFAULTS = Object.freeze({
     sample: "girih", // "" when the picture is the user's own, and then
     upload: "", uploadName: "", // the server's id of it, and its file's name
     threshold: "auto", window: 0, contrast: 0.2, // auto, local or 1 .. 255; of local: its window in px (0: it chooses), its contrast
     crop: "", // left,top,width,height in the picture's own pixels, before it is turned; "" = all of it
+    edits: "", // by hand, as edits.js has them
     invert: false, mirror: false, rotate: 0,
     width: 70, frame: 2, thickness: 4,
     printer: "hori-z500", "phi-e": 0.1, "phi-s": 0.3, "phi-v": 0.5, nudge: false, // "": the three figures; "file":
@@ -58,7 +63,10 @@ export const redo = () => travel(future, past);
 
 function writeAddress() {
     const parts = new URLSearchParams();
-    for (const [key, value] of Object.entries(now)) if (value !== DEFAULTS[key]) parts.set(key, String(value));
+    for (const [key, value] of Object.entries(now)) {
+        if (value === DEFAULTS[key] || (key === "edits" && value.length > MOST_ADDRESS_CHARACTERS)) continue;
+        parts.set(key, String(value));
+    }
     history.replaceState(null, "", `${location.pathname}#${parts}`);
 }
 
@@ -134,7 +142,8 @@ export function profileOf(s = now) {
 
 /** A job's keys that say what to make of a picture: docs/serve.md, without verb and files. */
 export function job(picture, s = now) {
-    return { picture: picture.id, name: picture.name, options: options(s),
+    const edits = jsonOf(editsOf(s.edits));
+    return { picture: picture.id, name: picture.name, options: options(s), ...(edits ? { edits } : {}),
         ...(s.surface === "mesh" && s.mesh ? { mesh: s.mesh } : {}), ...(s.printer === "file" && profileOf(s) ? { printer: profileOf(s) } : {}) };
 }
 
@@ -145,5 +154,6 @@ export function commandLine(picture) {
     const words = ["jali", "carve", quoted(picture)];
     for (const [key, value] of Object.entries(options(now, now.meshName, now.profileName)))
         words.push(value === "true" ? `--${key}` : `--${key} ${quoted(value)}`);
+    if (now.edits) words.push("--edits edits.json");
     return [...words, "-o", quoted(picture.replace(/\.\w+$/, "") + ".3mf")].join(" ");
 }
