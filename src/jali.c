@@ -385,9 +385,10 @@ static jali_status go_around(jali_context *ctx, jali_options *opt, const jali_sh
         return fail(ctx, JALI_BAD_VALUE, "a picture that goes all around can be neither %s",
                     opt->structure ? "loaded nor strengthened" : "nudged");
     if (opt->optimise.edits && opt->optimise.edits->count > 0)
-        return fail(ctx, JALI_BAD_VALUE,
-                    "a picture that goes all around takes no edits by hand; with --repeat and a bar at the back it "
-                    "does");
+        return fail(
+            ctx, JALI_BAD_VALUE,
+            "a picture that goes all around takes no edits by hand; with --repeat and a bar at the back it "
+            "does");
     place->around = MAX(opt->repeat, 1);
     place->width_mm = shell->outer.around_mm > 0 ? shell->outer.around_mm / place->around : 1;
     return JALI_OK;
