@@ -61,14 +61,25 @@ async function showPictures(id, signal) {
     edit.show(await bridges);
 }
 
-async function first(signal) {
+let previewed = Promise.resolve(); // the first preview that is under way, whether it fails or not
+
+async function show(signal) {
     const pictures = await preview(state(), signal);
     if (!pictures || signal.aborted) return;
     pictureView.show(pictures, true);
     performance.mark("preview:drawn");
 }
 
+function first(signal) {
+    const shown = show(signal);
+    previewed = shown.catch(() => {});
+    return shown;
+}
+
+// Not before the preview is there, which needs the processors itself.
 async function whole(signal) {
+    await previewed;
+    signal.throwIfAborted();
     const { surface, thickness, force } = state(), flat = surface === "plate";
     const files = force > 0 ? [...WHOLE_FILES, ...STRENGTH_FILES] : WHOLE_FILES;
     const picture = await pictureOf(state());
