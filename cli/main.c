@@ -12,7 +12,7 @@
 #include <stdio.h>
 
 enum {
-    IMAGE = GROUP_PICTURE | GROUP_SIZE | GROUP_METHOD,
+    IMAGE = GROUP_PICTURE | GROUP_SIZE | GROUP_GRID | GROUP_METHOD,
     OUTPUT_AND_RUN = GROUP_FILES | GROUP_OVERWRITE | GROUP_RUN,
 };
 
@@ -31,13 +31,12 @@ static const verb verbs[] = {
     {"read", "PICTURE", "the picture in grey as the others see it: cropped, turned; and its grey levels",
      GROUP_PICTURE | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png", run_read},
     {"place", "PICTURE", "put the picture on the printer's working grid, nothing else changed",
-     GROUP_PICTURE | GROUP_SIZE | OUTPUT_AND_RUN, ".png", run_place},
+     GROUP_PICTURE | GROUP_SIZE | GROUP_GRID | OUTPUT_AND_RUN, ".png", run_place},
     {"predict", "PICTURE|MASK",
      "what the printer would make of a picture as it is: how much of it is wrong, and where",
      GROUP_PICTURE | GROUP_SIZE | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png", run_predict},
     {"smallest", "PICTURE", "the smallest size at which nothing of the picture is lost",
-     GROUP_PICTURE | GROUP_SIZE | GROUP_METHOD | GROUP_SMALLEST | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN,
-     "", run_smallest},
+     IMAGE | GROUP_SMALLEST | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_smallest},
     {"compare", "PICTURE", "how far a print is from the picture: by the slicer's output, or by a scan",
      GROUP_PICTURE | GROUP_SIZE | GROUP_WITNESS | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png",
      run_compare},

@@ -6,9 +6,9 @@
 
 enum {
     MOST_JOB_FILES = 24,
-    JOB_OPTIONS = GROUP_PICTURE | GROUP_SIZE | GROUP_METHOD | GROUP_PLATE | GROUP_SURFACE | GROUP_LOAD |
-                  GROUP_REINFORCE | GROUP_VIEW |
-                  GROUP_SIDE | GROUP_SMALLEST // what a job may set, as far as its verb takes them
+    // What a job may set, as far as its verb takes them.
+    JOB_OPTIONS = GROUP_PICTURE | GROUP_SIZE | GROUP_GRID | GROUP_METHOD | GROUP_PLATE | GROUP_SURFACE |
+                  GROUP_LOAD | GROUP_REINFORCE | GROUP_VIEW | GROUP_SIDE | GROUP_SMALLEST
 };
 
 typedef struct job_file {
