@@ -91,9 +91,9 @@ async function whole(signal) {
     updateFields();
     last = { id, request, files: new Set(files) };
     showFigures();
+    await showPictures(id, signal);
     progress.hide();
     say("done", { seconds: figures.seconds.total.toFixed(2) });
-    await showPictures(id, signal);
     solidView.show(await bytesOf(id, "mesh.bin", signal), { flat, thickness, structure: figures.structure });
 }
 
