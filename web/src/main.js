@@ -55,10 +55,10 @@ function fail(error) {
 // --- Runs
 
 async function showPictures(id, signal) {
-    const bridges = api.file(id, "bridges.json", signal).then((answer) => answer.json());
-    const [input, mask] = await Promise.all(["input.png", "mask.png"].map((name) => bitmapOf(id, name, signal)));
+    const json = async (name) => (await api.file(id, name, signal)).json();
+    const [input, mask, bridges] = await Promise.all([bitmapOf(id, "input.png", signal), bitmapOf(id, "mask.png", signal), json("bridges.json")]);
     pictureView.show({ input, mask, layer: (name) => bitmapOf(id, name) });
-    edit.show(await bridges);
+    edit.show(bridges);
 }
 
 let previewed = Promise.resolve(); // the first preview that is under way, whether it fails or not
