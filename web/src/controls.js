@@ -67,7 +67,7 @@ function printerWords(s, lists) {
 function printerGroup(lists, take) {
     const figures = (s) => s.printer === "";
     return group("size",
-        slider("width", "width", { min: 10, max: 300, step: 1, unit: "mm" }),
+        slider("width", "width", { min: 10, max: 400, step: 1, unit: "mm" }),
         slider("frame", "frame", { min: 0, max: 20, step: 0.5, unit: "mm" }),
         slider("thickness", "thickness", { min: 0.4, max: 20, step: 0.2, unit: "mm" }),
         menu("printer", "printer", printerChoices(lists)), note((s) => printerWords(s, lists)),

@@ -102,13 +102,13 @@ export class Crop {
 
     bar() {
         this.numbers = ["cropLeft", "cropTop", "width", "height"].map((words, i) => {
-            const box = make("input", { type: "number", min: i < 2 ? 0 : 1, step: 1, "aria-label": `${text(words)}, ${text("px")}`, onchange: () => this.type(i, Math.round(box.value)) });
-            return box;
+            const box = make("input", { type: "number", min: i < 2 ? 0 : 1, step: 1, onchange: () => this.type(i, Math.round(box.value)) });
+            return { box, label: make("label", {}, `${text(words)}, ${text("px")}`, box) };
         });
         const ratio = make("select", { "aria-label": text("cropRatio"), onchange: () => this.keep(Number(ratio.value)) },
             RATIOS.map(([words, value]) => make("option", { value }, /\d/.test(words) ? words : text(`ratio_${words}`))));
         const button = (words, onclick, kind) => make("button", { type: "button", class: kind, onclick }, text(words));
-        return make("div", { class: "crop-bar" }, make("span", { class: "crop-numbers" }, this.numbers), ratio,
+        return make("div", { class: "crop-bar" }, make("span", { class: "crop-numbers" }, this.numbers.map(({ label }) => label)), ratio,
             button("cropAll", () => { this.box = [0, 0, this.width, this.height]; this.lay(); }),
             button("cropCancel", () => this.close()), button("cropDone", () => this.finish(), "accent"));
     }
@@ -162,7 +162,7 @@ export class Crop {
         Object.assign(this.area.style, { width: `${this.width * this.scale}px`, height: `${this.height * this.scale}px` });
         const part = (value, all) => `${(100 * value) / all}%`, [x, y, w, h] = this.box;
         Object.assign(this.holder.style, { left: part(x, this.width), top: part(y, this.height), width: part(w, this.width), height: part(h, this.height) });
-        this.numbers.forEach((box, i) => { if (document.activeElement !== box || Number(box.value) !== this.box[i]) box.value = this.box[i]; });
+        this.numbers.forEach(({ box }, i) => { if (document.activeElement !== box || Number(box.value) !== this.box[i]) box.value = this.box[i]; });
     }
 
     finish() {
