@@ -36,7 +36,7 @@ static const verb verbs[] = {
      "what the printer would make of a picture as it is: how much of it is wrong, and where",
      GROUP_PICTURE | GROUP_SIZE | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png", run_predict},
     {"smallest", "PICTURE", "the smallest size at which nothing of the picture is lost",
-     IMAGE | GROUP_SMALLEST | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_smallest},
+     (IMAGE & ~GROUP_METHOD) | GROUP_SMALLEST | GROUP_JSON | GROUP_OVERWRITE | GROUP_RUN, "", run_smallest},
     {"compare", "PICTURE", "how far a print is from the picture: by the slicer's output, or by a scan",
      GROUP_PICTURE | GROUP_SIZE | GROUP_WITNESS | GROUP_JSON | OUTPUT_AND_RUN | WRITES_NOTHING_TOO, ".png",
      run_compare},
