@@ -417,7 +417,7 @@ TEST(bridges_are_pinned_drawn_forbidden_and_regions_locked)
     int32_t found = bridges_in(json);
     read_text("none.json", json);
     CHECK(bridges_in(json) < found / 10); // details beside a drawn one can come out otherwise
-    run("adapt rings.png --width 30 --rotate 90 --crop 10,10,280,280 --edits found.json -o turned.png", 0,
+    run("adapt rings.png --width 30 --rotate 90 --crop 10,10,280,280 --edits found.json -o edited.png", 0,
         "drawn");
     write_edits("{\"version\": 1, \"size\": [1, 1], \"edits\": [{\"kind\": \"forbid\", "
                 "\"points\": [[0.2, 0.2], [0.8, 0.2], [0.8, 0.8], [0.2, 0.8]]}]}");

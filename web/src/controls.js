@@ -15,10 +15,13 @@ function thumbnail(name) {
     return image;
 }
 
+// Where a long name may break: not every browser has a dictionary.
+const hyphenated = (name) => name.replace(/(?<=sun)flower|(?<=checker)board/, "\u00ad$&");
+
 function gallery(lists) {
     const root = make("div", { class: "gallery", role: "group", "aria-label": text("samples") },
         lists.samples.map(({ name, what }) => make("button", { type: "button", title: what, "data-sample": name,
-            onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "", edits: "" }) }, thumbnail(name), name)));
+            onclick: () => change({ sample: name, upload: "", uploadName: "", crop: "", edits: "" }) }, thumbnail(name), hyphenated(name))));
     onUpdate((s) => {
         for (const button of root.children) button.setAttribute("aria-pressed", String(button.dataset.sample === s.sample));
     });
