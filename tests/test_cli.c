@@ -430,7 +430,7 @@ TEST(bridges_are_pinned_drawn_forbidden_and_regions_locked)
     CHECK_INT(code, 3);
     CHECK(strstr(said, "not one piece") && strstr(said, "locked or drawn by hand"));
     write_edits("{\"version\": 1, \"size\": [2, 1], \"edits\": []}");
-    run("adapt rings.png -o a.png --edits edits.json", 0, "");
+    run("adapt rings.png -o unedited.png --edits edits.json", 0, "");
     write_edits("{\"version\": 1, \"size\": [2, 1], \"edits\": [{\"kind\": \"bridge\", "
                 "\"points\": [[0, 0], [1, 1]]}]}");
     run("adapt rings.png -o b.png --edits edits.json", 4, "of another shape");
