@@ -2,13 +2,13 @@
 // our model and by PrusaSlicer's output.
 //
 //     slicer [DATA_FOLDER] [--only NAME] [--runs FIRST,LAST] [--own]
-//            [--maps FOLDER] [--limit SECONDS]
+//            [--maps FOLDER] [--limit SECONDS] [--sla]
 //     slicer --bars
 //
 // Plates are 1 mm thick: the layers of a plate are all alike. They are made for phi 0.1 / 0.3 / 0.5 mm, the
 // paper's FDM and SLA printers. The slicer's output holds no physical growth; "printed" adds it (voids below
 // phi_v close, edges grow by phi_e / 2). --own also makes plates for the slicer itself, with what --bars
-// measures of it.
+// measures of it; --sla leaves FDM out, which takes hours for dense plates.
 #include "prusa.h"
 #include "runs.h"
 
@@ -41,6 +41,7 @@ typedef struct witness {
     double seconds; // a limit
     const char *maps;
     bool own; // plates made for the slicer as well
+    bool sla; // alone
     char folder[64];
 } witness;
 
@@ -260,7 +261,7 @@ static bool run_one(jali_context *ctx, const witness *w, const char *data, const
     TRY(jali_reference_create(ctx, &result[0].input, &predict, &reference));
     row[MODEL_CONNECTED] = figures_of(&result[0].connected_print);
     row[MODEL_OPTIMISED] = figures_of(&result[0].result_print);
-    for (int i = 0; i < 2; i++) {
+    for (int i = w->sla; i < 2; i++) {
         static const char *const kind[2] = {"connected", "optimised"};
         const jali_mesh *const plate[2] = {&connected, &result[0].mesh};
         prusa_process process = i == 0 ? PRUSA_FDM : PRUSA_SLA;
@@ -447,6 +448,8 @@ int main(int argc, char **argv)
             sscanf(argv[++i], "%d,%d", &first, &last);
         else if (!strcmp(argv[i], "--own"))
             w.own = true;
+        else if (!strcmp(argv[i], "--sla"))
+            w.sla = true;
         else if (!strcmp(argv[i], "--bars"))
             bars = true;
         else

@@ -63,8 +63,10 @@ const sum = (tone) => tone.parts + tone.stretches;
 
 function lost(predict, smallest) {
     const found = predict?.lost, all = found ? sum(found.white) + sum(found.black) : 0;
-    const words = !found ? "" : all === 0 ? text("lostNothing")
-        : text("lostSome", { solid: found.white.parts, hollow: found.black.parts, lines: found.white.stretches + found.black.stretches });
+    const counts = !found ? [] : [["lostParts", found.white.parts], ["lostVoids", found.black.parts],
+        ["lostLines", found.white.stretches + found.black.stretches]];
+    const what = counts.filter(([, count]) => count > 0).map(([key, count]) => text(key, { count })).join(text("listComma"));
+    const words = !found ? "" : all === 0 ? text("lostNothing") : text("lostSome", { what });
     return make("section", {}, make("h2", {}, text("lostHead")), make("p", { class: "figure-words" }, words), smallest);
 }
 
