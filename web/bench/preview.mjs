@@ -18,7 +18,7 @@ const told = (times) => { const sorted = [...times].sort((a, b) => a - b); retur
 
 // One drag in the page; the milliseconds from its last move to each step.
 const stop = (page, from) => page.evaluate(async (first) => {
-    const slider = [...document.querySelectorAll("input[type=range]")].find((range) => range.max === "300");
+    const slider = document.querySelector("input[type=range][aria-label=Width]");
     performance.clearMarks();
     for (let i = 1; i <= 6; i++) {
         slider.value = first + i;
