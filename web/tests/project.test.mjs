@@ -49,8 +49,9 @@ test("picture, crop, profile, model and figures come back in another browser, an
     assert.match(await address(), /sample=rings/);
 });
 
-test("a sample's project is small, opens by dropping, and Ctrl+S saves", async () => {
-    await open("&sample=rings&rotate=90&invert=true");
+test("a sample's project is small, holds edits by hand, opens by dropping, and Ctrl+S saves", async () => {
+    const edits = "1000_1000*b9_310_420_350_400";
+    await open(`&sample=rings&rotate=90&invert=true&edits=${edits}`);
     const wait = t.page.waitForEvent("download");
     await t.page.keyboard.press("Control+s");
     const got = await wait, path = join(folder, "rings.jali");
@@ -62,6 +63,7 @@ test("a sample's project is small, opens by dropping, and Ctrl+S saves", async (
     await status(/^Working/);
     await done();
     assert.match(await address(), /sample=rings.*invert=true.*rotate=90/);
+    assert.equal(new URLSearchParams(await address()).get("edits"), edits);
 });
 
 test("a bad project ends in a sentence, and nothing changes", async () => {
