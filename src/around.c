@@ -149,7 +149,6 @@ static jali_status fold_added(jali_context *ctx, const strip *s, const jali_bitm
         TRY(jali_bitmap_create(ctx, width, part->height_px, &piece));
         TRY(jali_bitmap_create(ctx, period, part->height_px, &all));
         cut_out(&added, x, 0, &piece);
-        fill(ctx, &all, false);
         paste(&piece, first, 0, &all);
         combine(ctx, RULE_OR, part, &all, part);
         jali_bitmap_free(ctx, &piece);

@@ -130,26 +130,26 @@ jali_status jali_bitmap_png(jali_context *ctx, const jali_bitmap *bitmap, double
     return write_png(&job);
 }
 
-jali_status jali_rgb_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *rgb,
-                         jali_bytes *bytes)
+static jali_status samples_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *samples,
+                               int32_t channels, jali_bytes *bytes)
 {
     png_job job = {.ctx = ctx,
                    .bytes = bytes,
                    .width_px = width_px,
                    .height_px = height_px,
-                   .samples = rgb,
-                   .channels = 3};
+                   .samples = samples,
+                   .channels = channels};
     return write_png(&job);
+}
+
+jali_status jali_rgb_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *rgb,
+                         jali_bytes *bytes)
+{
+    return samples_png(ctx, width_px, height_px, rgb, 3, bytes);
 }
 
 jali_status jali_grey_png(jali_context *ctx, int32_t width_px, int32_t height_px, const uint8_t *grey,
                           jali_bytes *bytes)
 {
-    png_job job = {.ctx = ctx,
-                   .bytes = bytes,
-                   .width_px = width_px,
-                   .height_px = height_px,
-                   .samples = grey,
-                   .channels = 1};
-    return write_png(&job);
+    return samples_png(ctx, width_px, height_px, grey, 1, bytes);
 }
