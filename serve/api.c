@@ -127,10 +127,11 @@ static const task *wait_for_file(server *s, const char *id, const job_file *file
     struct timespec until;
     clock_gettime(CLOCK_MONOTONIC, &until);
     until.tv_sec += WAIT_SECONDS;
-    for (;;) {
-        const task *t = s->closing ? NULL : jobs_find(s, id);
+    for (bool late = false;;) {
+        const task *t = s->closing ? NULL : jobs_find(s, id); // anew each time: it may be forgotten meanwhile
         bool over = !t || t->state == JOB_DONE || t->state == JOB_FAILED || made_file(t, file);
-        if (over || pthread_cond_timedwait(&s->changed, &s->lock, &until) != 0) return t;
+        if (over || late) return t;
+        late = pthread_cond_timedwait(&s->changed, &s->lock, &until) != 0;
     }
 }
 

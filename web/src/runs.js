@@ -4,17 +4,16 @@ import * as api from "./api.js";
 
 const client = crypto.randomUUID(); // this page, to the server: of each of its kinds of jobs the newest counts
 
-// Start a job and see to `work(id)`; one that is aborted meanwhile ends on the server, too.
+// Start a job and see to `work(id)`; one that is aborted meanwhile ends on the server, too. Not before what was asked
+// of it has been taken back here: the answers would be that there is no such job.
 async function during(request, kind, signal, work) {
     const id = await api.start({ ...request, client: `${client}-${kind}` });
-    const stop = () => api.stop(id);
-    if (signal?.aborted) stop();
-    signal?.throwIfAborted();
-    signal?.addEventListener("abort", stop, { once: true });
     try {
+        signal?.throwIfAborted();
         return await work(id);
-    } finally {
-        signal?.removeEventListener("abort", stop);
+    } catch (error) {
+        if (signal?.aborted) api.stop(id);
+        throw error;
     }
 }
 

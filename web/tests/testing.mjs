@@ -44,7 +44,7 @@ beforeEach(async () => {
     t.errors = [];
     t.page.on("pageerror", (error) => t.errors.push(error.message));
     t.page.on("console", (message) => {
-        if (message.type() === "error") t.errors.push(message.text());
+        if (message.type() === "error") t.errors.push(`${message.text()} ${message.location().url}`);
     });
 });
 
