@@ -1,6 +1,11 @@
 // PrusaSlicer as a witness. FDM: nozzle 0.4 mm, layers of 0.2 mm, all filled, Arachne (the default of 2.5) or
 // the classic perimeters. SLA: an SL1's display, 2560 x 1440 px of 47 um, layers of 0.1 mm, no supports, no
 // pad.
+//
+// Left out is what PrusaSlicer looks for in plates whose layers differ: walls over nothing (--overhangs) and
+// walls under slopes (--extra-perimeters). Ours have neither; the search for the first clips the whole layer
+// below by the box of every wall, quadratic in the picture: 91 s instead of 10 for the tree 56 mm wide. The
+// errors stay within 0.01 points (docs/compare.md).
 #include "prusa.h"
 
 #include <fcntl.h>
@@ -38,6 +43,8 @@ static const char *const fdm[] = {"--export-gcode",
                                   "--elefant-foot-compensation",
                                   "0",
                                   "--gcode-comments",
+                                  "--overhangs=0",
+                                  "--extra-perimeters=0",
                                   "--bed-shape",
                                   "0x0,400x0,400x400,0x400",
                                   NULL};
