@@ -1,6 +1,6 @@
 // PrusaSlicer as a witness. FDM: nozzle 0.4 mm, layers of 0.2 mm, all filled, Arachne (the default of 2.5) or
-// the classic perimeters. SLA: an SL1's display, 2560 x 1440 px of 47 um, layers of 0.1 mm, no supports, no
-// pad.
+// the classic perimeters. SLA: an SL1's pixels of 47 um, no supports, no pad; layers of 0.25 mm, since each
+// of a plate shows the same and each costs the same.
 //
 // Left out is what PrusaSlicer looks for in plates whose layers differ: walls over nothing (--overhangs) and
 // walls under slopes (--extra-perimeters). Ours have neither; the search for the first clips the whole layer
@@ -48,8 +48,8 @@ static const char *const fdm[] = {"--export-gcode",
                                   "--bed-shape",
                                   "0x0,400x0,400x400,0x400",
                                   NULL};
-static const char *const sla[] = {"--export-sla", "--printer-technology", "SLA", "--layer-height", "0.1",
-                                  "--initial-layer-height", "0.1", "--supports-enable=0", "--pad-enable=0",
+static const char *const sla[] = {"--export-sla", "--printer-technology", "SLA", "--layer-height", "0.25",
+                                  "--initial-layer-height", "0.25", "--supports-enable=0", "--pad-enable=0",
                                   // Larger plates than an SL1's stay on one display of the same pixels.
                                   "--display-width", "240", "--display-height", "136", "--display-pixels-x",
                                   "5120", "--display-pixels-y", "2880", "--bed-shape",

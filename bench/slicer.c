@@ -2,13 +2,15 @@
 // our model and by PrusaSlicer's output.
 //
 //     slicer [DATA_FOLDER] [--only NAME] [--runs FIRST,LAST] [--own]
-//            [--maps FOLDER] [--limit SECONDS] [--sla]
+//            [--maps FOLDER] [--limit SECONDS] [--sla] [--voids MM] [--exact]
 //     slicer --bars
 //
 // Plates are 1 mm thick: the layers of a plate are all alike. They are made for phi 0.1 / 0.3 / 0.5 mm, the
 // paper's FDM and SLA printers. The slicer's output holds no physical growth; "printed" adds it (voids below
 // phi_v close, edges grow by phi_e / 2). --own also makes plates for the slicer itself, with what --bars
-// measures of it; --sla leaves FDM out, which takes hours for dense plates.
+// measures of it; --sla leaves FDM out. --voids makes the plates for another phi_v than the print closes
+// voids by; --exact closes them by phi_v itself, as if no slicer had moved their edges.
+#include "slicer.h"
 #include "prusa.h"
 #include "runs.h"
 
@@ -21,7 +23,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static const double PLATE_MM = 1, FRAME_MM = 2;
+static const double PLATE_MM = 1;
 
 // phi_v is the width of a drawn bar that prints; what the slicer makes of that bar is off by its own
 // resolution: paths are simplified to 0.0125 mm a side, screens have pixels of 47 um. So much narrower a
@@ -37,15 +39,7 @@ static const double printer_phi[3] = {0.1, 0.3, 0.5}; // the paper's Hori Z500 (
 static const int32_t order[BENCH_RUNS] = {9,  8,  17, 16, 11, 10, 1,  0,  13, 12, 7,  6,
                                           23, 22, 21, 20, 5,  4,  15, 14, 3,  2,  19, 18};
 
-typedef struct witness {
-    double seconds; // a limit
-    const char *maps;
-    bool own; // plates made for the slicer as well
-    bool sla; // alone
-    char folder[64];
-} witness;
-
-static bool tell(jali_context *ctx, jali_status status)
+bool tell(jali_context *ctx, jali_status status)
 {
     if (status != JALI_OK) fprintf(stderr, "%s\n", jali_message(ctx));
     return status == JALI_OK;
@@ -63,8 +57,7 @@ static jali_options options_of(double width_mm, const double phi[3])
     return opt;
 }
 
-static jali_status carve_mask(jali_context *ctx, const jali_bitmap *mask, const jali_chart *chart,
-                              jali_mesh *mesh)
+jali_status carve_mask(jali_context *ctx, const jali_bitmap *mask, const jali_chart *chart, jali_mesh *mesh)
 {
     jali_status status;
     jali_contours contours = {0};
@@ -78,7 +71,7 @@ done:
     return status;
 }
 
-static jali_status grey_of(jali_context *ctx, const jali_bitmap *a, int32_t margin, jali_picture *grey)
+jali_status grey_of(jali_context *ctx, const jali_bitmap *a, int32_t margin, jali_picture *grey)
 {
     *grey = (jali_picture){.width_px = a->width_px - 2 * margin, .height_px = a->height_px - 2 * margin};
     jali_status status = ALLOCATE(ctx, grey->grey, (size_t)grey->width_px * (size_t)grey->height_px);
@@ -173,11 +166,12 @@ static void slice(jali_context *ctx, const witness *w, prusa_process process, co
     jali_comparison c = {0};
     jali_prediction grown = {0};
     double took, pixel_mm = opt->picture_mm[0] / reference->picture.width_px;
+    double slack_mm = w->exact ? 0 : slicer_slack_mm[process];
     char kind[64];
     *sliced = *printed = (figures){.error = -1};
     if (prusa_print(ctx, process, mesh, w->folder, pixel_mm, w->seconds, &print, &took) &&
         tell(ctx, jali_compare(ctx, reference, &print, opt, &c)) &&
-        tell(ctx, grow_print(ctx, reference, &c, opt->picture_mm[0], slicer_slack_mm[process], &grown))) {
+        tell(ctx, grow_print(ctx, reference, &c, opt->picture_mm[0], slack_mm, &grown))) {
         *sliced = figures_of(&c.print);
         *printed = figures_of(&grown);
         write_map(ctx, w, reference, &c.print.printed, name, prusa_name(process));
@@ -245,7 +239,8 @@ static bool run_one(jali_context *ctx, const witness *w, const char *data, const
     jali_mesh connected = {0};
     jali_reference reference = {0};
     jali_predict_options predict = jali_predict_defaults();
-    jali_options opt = options_of(run->width_mm, printer_phi);
+    const double phi[3] = {printer_phi[0], printer_phi[1], w->voids_mm};
+    jali_options opt = options_of(run->width_mm, phi);
     for (int k = 0; k < COLUMNS; k++) row[k] = (figures){.error = -1};
     snprintf(path, sizeof path, "%s/%s.png", data, run->name);
     TRY(jali_read(ctx, path, NULL, &picture));
@@ -318,102 +313,6 @@ static void print_means(const figures (*row)[COLUMNS], int32_t count)
     }
 }
 
-// --- Bars
-
-enum { BARS = 20, BAR_PX = 5, PITCH_PX = 200, BAR_LONG_PX = 800, MARGIN_PX = 100, BARS_PER_MM = 100 };
-
-// Solid bars across a window, void bars in solid, 0.05 to 1 mm wide; a pixel is 0.01 mm.
-static jali_status draw_bars(jali_context *ctx, bool white, jali_bitmap *a)
-{
-    jali_status status =
-        jali_bitmap_create(ctx, BARS * PITCH_PX + 2 * MARGIN_PX, BAR_LONG_PX + 2 * MARGIN_PX, a);
-    if (status != JALI_OK) return status;
-    fill(ctx, a, true);
-    for (int32_t y = MARGIN_PX; y < MARGIN_PX + BAR_LONG_PX; y++) {
-        if (white) paint_run(a, y, MARGIN_PX, a->width_px - MARGIN_PX, false);
-        for (int32_t i = 0; i < BARS; i++) {
-            int32_t wide = BAR_PX * (i + 1), x = MARGIN_PX + PITCH_PX * i + (PITCH_PX - wide) / 2;
-            paint_run(a, y, x, x + wide, white);
-        }
-    }
-    return JALI_OK;
-}
-
-// How wide each bar came out: the mean over its middle half.
-static void measure_bars(const jali_bitmap *printed, double pixel_mm, bool white, double wide_mm[BARS])
-{
-    double px = 0.01 / pixel_mm;
-    for (int32_t i = 0; i < BARS; i++) {
-        int64_t count = 0;
-        int32_t x0 = (int32_t)lround((MARGIN_PX + PITCH_PX * i) * px),
-                x1 = (int32_t)lround(x0 + PITCH_PX * px);
-        int32_t y0 = (int32_t)lround((MARGIN_PX + BAR_LONG_PX / 4) * px),
-                y1 = (int32_t)lround((MARGIN_PX + 3 * BAR_LONG_PX / 4) * px);
-        for (int32_t y = y0; y < y1; y++)
-            count += white ? count_run(printed, y, x0, x1) : x1 - x0 - count_run(printed, y, x0, x1);
-        wide_mm[i] = (double)count / (y1 - y0) * pixel_mm;
-    }
-}
-
-static bool bars_of(jali_context *ctx, const witness *w, prusa_process process, bool white,
-                    double wide_mm[BARS])
-{
-    jali_status status;
-    jali_bitmap bars = {0}, drawing = {0};
-    jali_picture grey = {0};
-    jali_chart chart = {0};
-    jali_mesh mesh = {0};
-    jali_reference reference = {0};
-    jali_print print = {0};
-    jali_comparison c = {0};
-    double took;
-    jali_place_options place = jali_place_defaults();
-    TRY(draw_bars(ctx, white, &bars));
-    place.width_mm = bars.width_px * 0.01;
-    place.pixel_mm = 0.01;
-    place.frame_mm = FRAME_MM;
-    jali_compare_options compare = {{bars.width_px * 0.01, bars.height_px * 0.01}, FRAME_MM, 0.3};
-    jali_predict_options predict = jali_predict_defaults();
-    predict.picture_mm = compare.picture_mm[0];
-    TRY(grey_of(ctx, &bars, 0, &grey));
-    TRY(jali_place(ctx, &grey, 128, &place, &chart, &drawing));
-    TRY(carve_mask(ctx, &drawing, &chart, &mesh));
-    TRY(jali_reference_create(ctx, &bars, &predict, &reference));
-    double pixel_mm = compare.picture_mm[0] / reference.picture.width_px;
-    status = JALI_IO;
-    if (!prusa_print(ctx, process, &mesh, w->folder, pixel_mm, w->seconds, &print, &took)) goto done;
-    TRY(jali_compare(ctx, &reference, &print, &compare, &c));
-    measure_bars(&c.print.printed, pixel_mm, white, wide_mm);
-done:
-    tell(ctx, status);
-    jali_bitmap_free(ctx, &bars);
-    jali_bitmap_free(ctx, &drawing);
-    jali_picture_free(ctx, &grey);
-    jali_mesh_free(ctx, &mesh);
-    jali_reference_free(ctx, &reference);
-    jali_print_free(ctx, &print);
-    jali_comparison_free(ctx, &c);
-    return status == JALI_OK;
-}
-
-static int run_bars(jali_context *ctx, const witness *w)
-{
-    double wide_mm[PRUSA_PROCESSES][2][BARS];
-    printf("| drawn mm |");
-    for (int p = 0; p < PRUSA_PROCESSES; p++) printf(" %s: solid | void |", prusa_name(p));
-    printf("\n|---|---|---|---|---|---|---|\n");
-    for (int p = 0; p < PRUSA_PROCESSES; p++)
-        for (int white = 0; white < 2; white++)
-            if (!bars_of(ctx, w, p, white, wide_mm[p][white])) return 1;
-    for (int32_t i = 0; i < BARS; i++) {
-        printf("| %.2f |", 0.05 * (i + 1));
-        for (int p = 0; p < PRUSA_PROCESSES; p++)
-            printf(" %.3f | %.3f |", wide_mm[p][1][i], wide_mm[p][0][i]);
-        printf("\n");
-    }
-    return 0;
-}
-
 static void remove_folder(const witness *w)
 {
     static const char *const name[] = {"plate.stl", "plate.gcode", "plate.sl1"};
@@ -432,7 +331,7 @@ int main(int argc, char **argv)
     const char *data = "../shared/data/images", *only = NULL;
     int32_t first = 0, last = BENCH_RUNS - 1, count = 0;
     bool bars = false;
-    witness w = {.seconds = 300, .folder = "/tmp/jali-slicer-XXXXXX"};
+    witness w = {.seconds = 900, .voids_mm = printer_phi[2], .folder = "/tmp/jali-slicer-XXXXXX"};
     figures row[BENCH_RUNS][COLUMNS];
     jali_context *ctx;
     jali_context_options copt = jali_context_defaults();
@@ -446,6 +345,10 @@ int main(int argc, char **argv)
             w.seconds = strtod(argv[++i], NULL);
         else if (!strcmp(argv[i], "--runs") && i + 1 < argc)
             sscanf(argv[++i], "%d,%d", &first, &last);
+        else if (!strcmp(argv[i], "--voids") && i + 1 < argc)
+            w.voids_mm = strtod(argv[++i], NULL);
+        else if (!strcmp(argv[i], "--exact"))
+            w.exact = true;
         else if (!strcmp(argv[i], "--own"))
             w.own = true;
         else if (!strcmp(argv[i], "--sla"))
