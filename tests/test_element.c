@@ -243,6 +243,23 @@ TEST(shear_is_constant_where_nothing_bends)
     }
 }
 
+TEST(the_centre_has_the_mean_of_the_corners)
+{
+    uint64_t seed = 37;
+    for (int round = 0; round < 200; round++) {
+        double node[3][3], frame[3][3], u[18];
+        resultants at[3], centre;
+        random_triangle(&seed, 3, node);
+        for (int i = 0; i < 18; i++) u[i] = 2 * uniform(&seed) - 1;
+        facet_resultants((const double(*)[3])node, &PLASTIC, u, at);
+        facet_frame((const double(*)[3])node, frame);
+        facet_centre((const double(*)[3])node, (const double(*)[3])frame, &PLASTIC, u, &centre);
+        double scale = largest(&at[0].n[0], 24);
+        const double *mean = &centre.n[0], *a = &at[0].n[0], *b = &at[1].n[0], *c = &at[2].n[0];
+        for (int i = 0; i < 8; i++) CHECK(fabs(mean[i] - (a[i] + b[i] + c[i]) / 3) < 1e-12 * scale);
+    }
+}
+
 TEST(numbering_and_axes_do_not_matter)
 {
     uint64_t seed = 31;
@@ -380,6 +397,7 @@ int main(void)
         cmocka_unit_test(rigid_motions_cost_nothing),
         cmocka_unit_test(patches_of_any_triangles_hold_constant_strain_and_curvature),
         cmocka_unit_test(shear_is_constant_where_nothing_bends),
+        cmocka_unit_test(the_centre_has_the_mean_of_the_corners),
         cmocka_unit_test(numbering_and_axes_do_not_matter),
         cmocka_unit_test(plates_are_the_bending_of_facets),
         cmocka_unit_test(rectangles_bend_exactly_in_their_plane),

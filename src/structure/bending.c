@@ -33,22 +33,41 @@ void bending_rows(const flat_triangle *t, double row[6][9])
     }
 }
 
+// Plate stiffnesses D_b (times plane stress of unit E), D_s, and 12 D_b / D_s.
+typedef struct plate_figures {
+    double bends, shears, ratio;
+} plate_figures;
+
+static plate_figures figures_of(const facet_material *m)
+{
+    double bends = m->thickness_mm * m->thickness_mm * m->thickness_mm / 12;
+    double shears = SHEAR_FACTOR * m->thickness_mm * m->e_mpa / (2 * (1 + m->nu));
+    return (plate_figures){bends, shears, 12 * bends * m->e_mpa / ((1 - m->nu * m->nu) * shears)};
+}
+
+// By how much a unit of shear W of a side turns the normals along it, and slides.
+static void side_parts(const double side[2], double ratio, double *turn, double *slide)
+{
+    double square = side[0] * side[0] + side[1] * side[1], whole = square + ratio;
+    *turn = -6 / whole;     // -3/2 . 4 / (length^2 (1 + phi))
+    *slide = ratio / whole; // phi / (1 + phi)
+}
+
 // What a unit of shear W of each side does at the corners.
 typedef struct side_fields {
-    double bends, shears;      // plate stiffnesses D_b (times plane stress of unit E), D_s
+    double bends, shears;      // of plate_figures
     double curvature[3][3][3]; // [corner][side][xx, yy, xy]
     double shear[3][3][2];     // [corner][side][x, y]
 } side_fields;
 
 static side_fields fields_of(const flat_triangle *t, const facet_material *m)
 {
-    side_fields f = {.bends = m->thickness_mm * m->thickness_mm * m->thickness_mm / 12,
-                     .shears = SHEAR_FACTOR * m->thickness_mm * m->e_mpa / (2 * (1 + m->nu))};
-    double ratio = 12 * f.bends * m->e_mpa / ((1 - m->nu * m->nu) * f.shears);
+    plate_figures of = figures_of(m);
+    side_fields f = {.bends = of.bends, .shears = of.shears};
     for (int k = 0; k < 3; k++) {
         const double *side = t->side[k];
-        double square = side[0] * side[0] + side[1] * side[1], whole = square + ratio;
-        double turn = -6 / whole, slide = ratio / whole; // -3/2 . 4 / (length^2 (1 + phi)); phi / (1 + phi)
+        double turn, slide;
+        side_parts(side, of.ratio, &turn, &slide);
         // The parabola 4 a_i a_j has the slope 4 grad a_j at node i, 4 grad a_i at node j, none at the third;
         // the edge function a_i grad a_j - a_j grad a_i is grad a_j, -grad a_i and nothing there.
         for (int end = 0; end < 2; end++) {
@@ -115,4 +134,33 @@ void bending_resultants(const flat_triangle *t, const facet_material *made_of, c
         for (int i = 0; i < 3; i++) at[c].m[i] *= f.bends;
         for (int i = 0; i < 2; i++) at[c].q[i] = f.shears * shear[i];
     }
+}
+
+void bending_centre(const flat_triangle *t, const facet_material *made_of, const double u[9], double m[3],
+                    double q[2])
+{
+    double row[6][9], mode[6], shear[2] = {0, 0};
+    plate_figures of = figures_of(made_of);
+    bending_rows(t, row);
+    for (int r = 0; r < 6; r++) {
+        mode[r] = 0;
+        for (int j = 0; j < 9; j++) mode[r] += row[r][j] * u[j];
+    }
+    double curvature[3] = {mode[0], mode[1], mode[2]};
+    for (int k = 0; k < 3; k++) {
+        const double *side = t->side[k], *g = t->gradient[k], *h = t->gradient[(k + 1) % 3];
+        double turn, slide;
+        side_parts(side, of.ratio, &turn, &slide);
+        turn *= mode[3 + k] / 3; // of the slopes 4 h, 4 g and none at the corners the mean
+        slide *= mode[3 + k] / 3;
+        double gx = g[0] + h[0], gy = g[1] + h[1];
+        curvature[0] += turn * gx * side[0];
+        curvature[1] += turn * gy * side[1];
+        curvature[2] += turn * (gx * side[1] + gy * side[0]);
+        shear[0] += slide * (h[0] - g[0]);
+        shear[1] += slide * (h[1] - g[1]);
+    }
+    stress_of(plane_stress_of(made_of), curvature, m);
+    for (int i = 0; i < 3; i++) m[i] *= of.bends;
+    for (int i = 0; i < 2; i++) q[i] = of.shears * shear[i];
 }

@@ -99,6 +99,26 @@ void facet_resultants(const double node[3][3], const facet_material *made_of, co
     bending_resultants(&t, made_of, mode + 6, at);
 }
 
+void facet_centre(const double node[3][3], const double frame[3][3], const facet_material *made_of,
+                  const double u[18], resultants *centre)
+{
+    double stretches[9], bends[9]; // unknowns in the facet's axes
+    const double *x = frame[0], *y = frame[1], *z = frame[2];
+    flat_triangle t = facet_flat(node, frame);
+    for (int i = 0; i < 3; i++) {
+        const double *move = u + 6 * i, *turn = move + 3;
+        double *in_plane = stretches + 3 * i, *across = bends + 3 * i;
+        in_plane[0] = x[0] * move[0] + x[1] * move[1] + x[2] * move[2];
+        in_plane[1] = y[0] * move[0] + y[1] * move[1] + y[2] * move[2];
+        in_plane[2] = z[0] * turn[0] + z[1] * turn[1] + z[2] * turn[2];
+        across[0] = z[0] * move[0] + z[1] * move[1] + z[2] * move[2];
+        across[1] = x[0] * turn[0] + x[1] * turn[1] + x[2] * turn[2];
+        across[2] = y[0] * turn[0] + y[1] * turn[1] + y[2] * turn[2];
+    }
+    membrane_centre(&t, made_of, stretches, centre->n);
+    bending_centre(&t, made_of, bends, centre->m, centre->q);
+}
+
 // A membrane with rotations about its normal takes the force across a side as that of a line load, ends fixed
 // by 3/2 (alpha_b) of its moments; at a fold those of the two facets leave a moment about the side's normal,
 // against which the pressure's has to stand.

@@ -97,3 +97,13 @@ void membrane_resultants(const flat_triangle *t, const facet_material *made_of, 
         for (int i = 0; i < 3; i++) at[c].n[i] *= made_of->thickness_mm;
     }
 }
+
+void membrane_centre(const flat_triangle *t, const facet_material *made_of, const double u[9], double n[3])
+{
+    double row[6][9], strain[3] = {0, 0, 0};
+    membrane_rows(t, row);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 9; j++) strain[i] += row[i][j] * u[j];
+    stress_of(plane_stress_of(made_of), strain, n);
+    for (int i = 0; i < 3; i++) n[i] *= made_of->thickness_mm;
+}

@@ -55,11 +55,17 @@ void membrane_modes_stiffness(const flat_triangle *t, const facet_material *made
 void membrane_resultants(const flat_triangle *t, const facet_material *made_of, const double mode[6],
                          resultants at[3]);
 
+/// The force at the centroid, from unknowns in the triangle's axes; the higher strains are zero there.
+void membrane_centre(const flat_triangle *t, const facet_material *made_of, const double u[9], double n[3]);
+
 /// Bending. Unknowns of node i at 3i: displacement along z, rotation about x, about y. Modes: curvatures xx,
 /// yy, xy of the rotations at the nodes; the shear strain summed along each side.
 void bending_rows(const flat_triangle *t, double row[6][9]);
 void bending_modes_stiffness(const flat_triangle *t, const facet_material *made_of, double stiffness[6][6]);
 void bending_resultants(const flat_triangle *t, const facet_material *made_of, const double mode[6],
                         resultants at[3]);
+/// Moment and shear at the centroid, from unknowns in the triangle's axes.
+void bending_centre(const flat_triangle *t, const facet_material *made_of, const double u[9], double m[3],
+                    double q[2]);
 
 #endif

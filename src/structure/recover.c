@@ -84,7 +84,7 @@ static void evaluate_block(void *shared, int32_t block)
     for (int32_t t = block * BLOCK; t < MIN((block + 1) * BLOCK, sheet->triangle_count); t++) {
         triangle_state *s = &r->state[t];
         double at[3][3], u[18];
-        resultants corner[3];
+        resultants centre;
         facet_material made_of = *r->made_of;
         made_of.thickness_mm = 0;
         for (int i = 0; i < 3; i++) {
@@ -93,17 +93,17 @@ static void evaluate_block(void *shared, int32_t block)
             memcpy(u + 6 * i, r->u[n], 6 * sizeof *u);
             made_of.thickness_mm += sheet->thickness_mm[n] / 3;
         }
-        facet_resultants((const double(*)[3])at, &made_of, u, corner);
         facet_frame((const double(*)[3])at, s->frame);
+        facet_centre((const double(*)[3])at, (const double(*)[3])s->frame, &made_of, u, &centre);
         memcpy(r->normal[t], s->frame[2], sizeof r->normal[t]);
         r->thickness[t] = made_of.thickness_mm;
         s->area = 0;
         for (int k = 0; k < 3; k++) {
             s->centroid[k] = (at[0][k] + at[1][k] + at[2][k]) / 3;
-            s->value[k] = (corner[0].n[k] + corner[1].n[k] + corner[2].n[k]) / 3;
-            s->value[3 + k] = (corner[0].m[k] + corner[1].m[k] + corner[2].m[k]) / 3;
+            s->value[k] = centre.n[k];
+            s->value[3 + k] = centre.m[k];
         }
-        for (int k = 0; k < 2; k++) s->value[6 + k] = (corner[0].q[k] + corner[1].q[k] + corner[2].q[k]) / 3;
+        memcpy(s->value + 6, centre.q, sizeof centre.q);
         double wide = 0, high = 0;
         for (int k = 0; k < 3; k++) {
             wide += s->frame[0][k] * (at[1][k] - at[0][k]);
