@@ -108,9 +108,11 @@ done:
 static jali_status make_draft(jali_context *ctx, job *j)
 {
     jali_status status;
+    jali_analyse_options opt = j->opt.analyse;
+    opt.rough = true;
     look_free(ctx, &j->draft);
     TRY(make_sheet(ctx, j, j->outline, &j->coarse, &j->draft.sheet));
-    TRY(jali_analyse(ctx, &j->draft.sheet, &j->opt.analyse, &j->draft.analysis));
+    TRY(jali_analyse(ctx, &j->draft.sheet, &opt, &j->draft.analysis));
 done:
     return status;
 }

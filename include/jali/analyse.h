@@ -48,6 +48,7 @@ typedef struct jali_analyse_options {
     jali_support support;   // default: the picture's boundary
     jali_load load;         // default: none
     double phi_s_mm;        // narrowest solid feature: stresses are means over discs half as wide; > 0 (0.3)
+    bool rough;             // for a search: solutions to 1e-8, stresses only where they are large (false)
 } jali_analyse_options;
 
 JALI_API jali_analyse_options jali_analyse_defaults(void);
@@ -71,7 +72,7 @@ typedef struct jali_analysis {
     jali_peak stress, raw_stress, moved; // largest mean, largest raw (MPa), largest displacement (mm)
     double area_mm2;                     // of the sheet
     double pressure_mpa;                 // as applied
-    double residual;                     // |K u - f| / |f|
+    double residual;                     // |K u - f| / |f|; NAN when it was not asked for (rough)
     struct jali_stiffness *stiffness;    // factorised, for what comes after
 } jali_analysis;
 

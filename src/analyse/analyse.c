@@ -57,9 +57,11 @@ static jali_status respond(jali_context *ctx, const jali_sheet *sheet, jali_anal
 {
     jali_status status;
     structure *s = &a->stiffness->structure;
-    TRY(structure_solve(ctx, s, 1, (const double(*)[6])a->stiffness->load, a->displacement));
-    a->residual = s->residual;
-    TRY(stresses_of(ctx, sheet, &a->stiffness->opt, false, a));
+    bool rough = a->stiffness->opt.rough;
+    TRY((rough ? structure_influence : structure_solve)(ctx, s, 1, (const double(*)[6])a->stiffness->load,
+                                                        a->displacement));
+    a->residual = rough ? NAN : s->residual;
+    TRY(stresses_of(ctx, sheet, &a->stiffness->opt, rough, a));
 done:
     return status;
 }

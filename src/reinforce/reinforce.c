@@ -110,6 +110,20 @@ done:
     return status;
 }
 
+// Before the first connector: as the sheet was analysed.
+static jali_status look_back(jali_context *ctx, search *s)
+{
+    jali_status status;
+    const jali_analysis *was = s->analysis;
+    size_t n = (size_t)s->sheet->node_count;
+    TRY(room_for_results(ctx, s->sheet->node_count, &s->now));
+    memcpy(s->u, was->displacement, n * sizeof *s->u);
+    memcpy(s->now.mean_mpa, was->mean_mpa, n * sizeof *was->mean_mpa);
+    s->now.stress = was->stress;
+done:
+    return status;
+}
+
 static jali_status record(jali_context *ctx, search *s, jali_reinforcement *r)
 {
     jali_status status = GROW(ctx, r->round, s->round_capacity, r->round_count + 1);
@@ -418,7 +432,7 @@ static jali_status prepare(jali_context *ctx, search *s)
     TRY(borders_create(ctx, s->sheet, s->chart, &s->borders));
     TRY(find_spans(ctx, s->sheet, &s->borders, s->mask, s->opt.blocked, s->chart, s->opt.phi_s_mm, longest,
                    &s->spans));
-    TRY(look(ctx, s));
+    TRY(look_back(ctx, s));
 done:
     return status;
 }

@@ -395,6 +395,6 @@ jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const f
 jali_status recover_peaks(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
                           const double (*u)[6], double disc_mm, stresses *s)
 {
-    const double quiet_share = 0.125; // a patch reads at most a few times its worst triangle at its node
+    const double quiet_share = 0.25; // a patch reads at most a few times its worst triangle at its node
     return recover(ctx, sheet, made_of, u, disc_mm, quiet_share, s);
 }

@@ -36,7 +36,7 @@ jali_status recover_stresses(jali_context *ctx, const jali_sheet *sheet, const f
                              const double (*u)[6], double disc_mm, stresses *s);
 
 /// As recover_stresses, but only where the sheet is stressed most: for searches. Nodes about which no
-/// triangle has an eighth of the largest stress keep what the worst of their triangles has for `worst` and
+/// triangle has a quarter of the largest stress keep what the worst of their triangles has for `worst` and
 /// `mean`, and 0 for the rest.
 jali_status recover_peaks(jali_context *ctx, const jali_sheet *sheet, const facet_material *made_of,
                           const double (*u)[6], double disc_mm, stresses *s);
