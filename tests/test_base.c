@@ -30,6 +30,28 @@ TEST(threads_of_a_pool_call_each_index_once)
     }
 }
 
+typedef struct nest {
+    jali_context *ctx;
+    int32_t result[20][60];
+} nest;
+
+static void square_each(void *shared, int32_t index)
+{
+    nest *n = shared;
+    parallel(n->ctx, 60, square, n->result[index]);
+}
+
+TEST(threads_of_a_pool_run_what_they_call_themselves)
+{
+    nest n = {.ctx = ctx};
+    for (int32_t round = 0; round < 50; round++) {
+        memset(n.result, 0, sizeof n.result);
+        parallel(ctx, 20, square_each, &n);
+        for (int32_t i = 0; i < 20; i++)
+            for (int32_t k = 0; k < 60; k++) CHECK_INT(n.result[i][k], k * k);
+    }
+}
+
 TEST(memory_limit_is_a_sentence)
 {
     jali_context_options opt = jali_context_defaults();
@@ -105,6 +127,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(arena_gives_back_what_a_stage_took, open_context, close_context),
         cmocka_unit_test_setup_teardown(threads_of_a_pool_call_each_index_once, open_context, close_context),
+        cmocka_unit_test_setup_teardown(threads_of_a_pool_run_what_they_call_themselves, open_context,
+                                        close_context),
         cmocka_unit_test_setup_teardown(memory_limit_is_a_sentence, open_context, close_context),
         cmocka_unit_test_setup_teardown(cancel_and_timeout_stop_the_next_step, open_context, close_context),
         cmocka_unit_test_setup_teardown(bad_context_options_are_refused, open_context, close_context),

@@ -289,25 +289,41 @@ TEST(the_picture_may_be_its_own_result)
     jali_bitmap_free(ctx, &joined);
 }
 
+// With several threads parts are searched for before their turn: near ones, far ones, in crowds and alone.
+static void check_threads(jali_context *by_threads[3], const jali_bitmap *a, jali_metric metric)
+{
+    jali_connect_options opt = {.metric = metric};
+    jali_bitmap joined[3];
+    jali_bridges bridges[3];
+    for (int32_t i = 0; i < 3; i++) {
+        CHECK_INT(jali_connect(by_threads[i], a, &opt, &joined[i], &bridges[i]), JALI_OK);
+        CHECK(same_bitmap(&joined[i], &joined[0]));
+        CHECK_INT(bridges[i].count, bridges[0].count);
+        CHECK(memcmp(bridges[i].bridge, bridges[0].bridge, (size_t)bridges[0].count * sizeof(jali_bridge)) ==
+              0);
+    }
+    for (int32_t i = 0; i < 3; i++) {
+        jali_bitmap_free(by_threads[i], &joined[i]);
+        jali_bridges_free(by_threads[i], &bridges[i]);
+    }
+}
+
 TEST(any_number_of_threads_gives_the_same_bytes)
 {
+    static const struct {
+        int32_t width, height, most; // white pixels in a thousand
+    } pictures[] = {{300, 200, 100}, {300, 200, 300}, {300, 200, 500}, {900, 700, 2}, {4000, 60, 3}};
     uint64_t seed = 8;
     jali_context *by_threads[3];
     open_thread_contexts(by_threads);
-    for (int32_t percent = 10; percent <= 50; percent += 20) {
-        jali_bitmap a = random_bitmap(&seed, 300, 200, percent), joined[3];
-        jali_bridges bridges[3];
-        for (int32_t i = 0; i < 3; i++) {
-            CHECK_INT(jali_connect(by_threads[i], &a, NULL, &joined[i], &bridges[i]), JALI_OK);
-            CHECK(same_bitmap(&joined[i], &joined[0]));
-            CHECK_INT(bridges[i].count, bridges[0].count);
-            CHECK(memcmp(bridges[i].bridge, bridges[0].bridge,
-                         (size_t)bridges[0].count * sizeof(jali_bridge)) == 0);
-        }
-        for (int32_t i = 0; i < 3; i++) {
-            jali_bitmap_free(by_threads[i], &joined[i]);
-            jali_bridges_free(by_threads[i], &bridges[i]);
-        }
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++) {
+        jali_bitmap a;
+        CHECK_OK(jali_bitmap_create(ctx, pictures[i].width, pictures[i].height, &a));
+        for (int64_t k = (int64_t)a.width_px * a.height_px * pictures[i].most / 1000; k > 0; k--)
+            jali_bitmap_set(&a, (int32_t)((next_random(&seed) >> 40) % (uint64_t)a.width_px),
+                            (int32_t)((next_random(&seed) >> 40) % (uint64_t)a.height_px), true);
+        check_threads(by_threads, &a, JALI_METRIC_CITY_BLOCK);
+        check_threads(by_threads, &a, JALI_METRIC_OCTAGON);
         jali_bitmap_free(ctx, &a);
     }
     close_thread_contexts(by_threads);

@@ -139,15 +139,15 @@ static inline void refusing_release(void *user, void *block)
 }
 
 /// Run `body` once for each `stride`-th allocation it makes, that one refused: the status must be
-/// JALI_NO_MEMORY and nothing may leak. Ends when a run needs no more allocations. The single thread keeps
-/// the count exact.
+/// JALI_NO_MEMORY and nothing may leak. Ends when a run needs no more allocations. The count is exact, for
+/// threads of a pool allocate nothing.
 static inline void refuse_allocations(jali_status (*body)(jali_context *limited, void *data), void *data,
                                       int64_t stride)
 {
     for (int64_t refuse_at = 1;; refuse_at += stride) {
         refusing r = {.refuse_at = refuse_at};
         jali_context_options opt = jali_context_defaults();
-        opt.threads = 1;
+        opt.threads = 2;
         opt.allocate = refusing_allocate;
         opt.release = refusing_release;
         opt.user = &r;

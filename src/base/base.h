@@ -61,8 +61,10 @@ const jali_files *files_of(const jali_context *ctx);
 
 /// Call work(shared, i) for i = 0 .. count-1 on the pool's threads. The order is not defined, so each i
 /// writes to a place of its own; `work` allocates nothing. Items, not threads, set the split: any thread
-/// count gives the same result.
+/// count gives the same result. What `work` calls that is parallel too runs in its own thread.
 void parallel(jali_context *ctx, int32_t count, void (*work)(void *shared, int32_t index), void *shared);
+/// How many threads that takes, the caller's own counted.
+int32_t threads_of(const jali_context *ctx);
 
 /// Report progress (fraction 0 .. 1 of this stage) and ask whether to go on.
 ///   fails  JALI_CANCELLED, JALI_LIMIT (time)

@@ -125,12 +125,30 @@ jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t 
     return JALI_OK;
 }
 
+enum { CLEAR_BYTES = 1 << 17 }; // at a time
+
+typedef struct clearing {
+    char *block;
+    size_t bytes;
+} clearing;
+
+static void clear_piece(void *shared, int32_t piece)
+{
+    const clearing *c = shared;
+    size_t from = (size_t)piece * CLEAR_BYTES;
+    memset(c->block + from, 0, MIN(CLEAR_BYTES, c->bytes - from));
+}
+
 jali_status allocate_cleared(jali_context *ctx, void *where, size_t count, size_t size)
 {
     jali_status status = allocate_array(ctx, where, count, size);
     void *block;
     memcpy(&block, where, sizeof block);
-    if (block) memset(block, 0, count * size);
+    clearing c = {block, block ? count * size : 0};
+    if (c.bytes > 2 * (size_t)CLEAR_BYTES && c.bytes / CLEAR_BYTES < INT32_MAX)
+        parallel(ctx, (int32_t)((c.bytes + CLEAR_BYTES - 1) / CLEAR_BYTES), clear_piece, &c);
+    else if (block)
+        memset(block, 0, c.bytes);
     return status;
 }
 
@@ -203,6 +221,11 @@ const jali_files *files_of(const jali_context *ctx)
 void parallel(jali_context *ctx, int32_t count, void (*work)(void *shared, int32_t index), void *shared)
 {
     pool_run(ctx->pool, count, work, shared);
+}
+
+int32_t threads_of(const jali_context *ctx)
+{
+    return ctx->opt.threads;
 }
 
 bool stopping(const jali_context *ctx)

@@ -21,6 +21,7 @@ struct pool {
     atomic_int inside; // workers that take part in this run; changes under the lock
     atomic_uint runs;  // counts runs, so that a worker knows a new one; changes under the lock
     bool open;         // this run can still be entered
+    atomic_bool busy;  // from the first index to the last; a run within a run is its caller's alone
     atomic_bool closing;
     void (*work)(void *shared, int32_t index);
     void *shared;
@@ -74,10 +75,11 @@ static void start_workers(pool *p, int32_t wanted)
 
 void pool_run(pool *p, int32_t count, void (*work)(void *shared, int32_t index), void *shared)
 {
-    if (p->started == 0 || count <= 1) {
+    if (p->started == 0 || count <= 1 || p->busy) {
         for (int32_t i = 0; i < count; i++) work(shared, i);
         return;
     }
+    p->busy = true;
     pthread_mutex_lock(&p->lock);
     p->work = work;
     p->shared = shared;
@@ -95,6 +97,7 @@ void pool_run(pool *p, int32_t count, void (*work)(void *shared, int32_t index),
     pthread_mutex_lock(&p->lock);
     while (p->inside > 0) pthread_cond_wait(&p->finished, &p->lock);
     pthread_mutex_unlock(&p->lock);
+    p->busy = false;
 }
 
 jali_status pool_create(jali_context *ctx, int32_t threads, pool **out)

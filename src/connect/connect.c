@@ -6,8 +6,8 @@
 // of
 //          small pictures.
 #include <jali/connect.h>
+#include "connect/ahead.h"
 #include "connect/detour.h"
-#include "connect/search.h"
 #include "base/base.h"
 
 jali_connect_options jali_connect_defaults(void)
@@ -25,7 +25,7 @@ void jali_bridges_free(jali_context *ctx, jali_bridges *bridges)
 typedef struct joining {
     jali_bitmap *solid;
     parts p;
-    search s;
+    ahead a;
     detour d;
     jali_bridges laid;
     size_t capacity, via_capacity;
@@ -99,7 +99,7 @@ static jali_status find_way(jali_context *ctx, joining *j, const jali_connect_op
     jali_status status;
     *found = true;
     *bridge = (jali_bridge){0};
-    TRY(nearest_other(ctx, j->solid, &j->p, root, opt->metric, &j->s, bridge));
+    TRY(nearest_in_turn(ctx, j->solid, &j->p, root, opt->metric, &j->laid, &j->a, bridge));
     if (!opt->blocked || line_is_free(j->solid, opt->blocked, bridge->from, bridge->to)) return JALI_OK;
     TRY(find_detour(ctx, j->solid, opt->blocked, &j->p, root, opt->metric, &j->d, bridge, found));
     if (*found) TRY(keep_corners(ctx, j, bridge));
@@ -107,12 +107,11 @@ done:
     return status;
 }
 
-// Give the smallest part a bridge; one that no way leads from is not asked again.
-static jali_status join_smallest(jali_context *ctx, joining *j, const jali_connect_options *opt)
+// Give a part a bridge; one that no way leads from is not asked again.
+static jali_status join_part(jali_context *ctx, joining *j, const jali_connect_options *opt, int32_t root)
 {
     jali_status status;
     bool found;
-    int32_t root = smallest_part(&j->p);
     TRY(GROW(ctx, j->laid.bridge, j->capacity, j->laid.count + 1));
     jali_bridge *bridge = &j->laid.bridge[j->laid.count];
     TRY(find_way(ctx, j, opt, root, bridge, &found));
@@ -135,12 +134,13 @@ jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing, const ja
     jali_connect_options opt = given ? *given : jali_connect_defaults();
     jali_bitmap solid = {0};
     joining j = {.solid = &solid};
+    ahead_create(&j.a);
     TRY(jali_bitmap_copy(ctx, drawing, &solid));
     TRY(parts_create(ctx, &solid, &j.p));
     int32_t parts_before = j.p.alive;
-    while (j.p.alive - j.laid.stranded > 1) {
+    for (int32_t root; j.p.alive - j.laid.stranded > 1 && smallest_part(&j.p, &root);) {
         TRY(step(ctx, "connect", 1 - (double)j.p.alive / parts_before));
-        TRY(join_smallest(ctx, &j, &opt));
+        TRY(join_part(ctx, &j, &opt, root));
     }
     if (joined == drawing) jali_bitmap_free(ctx, joined);
     *joined = solid;
@@ -157,7 +157,7 @@ done:
     jali_bridges_free(ctx, &j.laid);
     jali_bitmap_free(ctx, &solid);
     parts_free(ctx, &j.p);
-    search_free(ctx, &j.s);
+    ahead_free(ctx, &j.a);
     detour_free(ctx, &j.d);
     return status;
 }

@@ -32,12 +32,14 @@ static struct part_key pop(parts *p)
     return top;
 }
 
-int32_t smallest_part(parts *p)
+bool smallest_part(parts *p, int32_t *root)
 {
-    struct part_key key;
-    do key = pop(p);
-    while (p->parent[key.root] != key.root || p->area[key.root] != key.area);
-    return key.root;
+    while (p->heap_count > 0) {
+        struct part_key key = pop(p);
+        *root = key.root;
+        if (p->parent[key.root] == key.root && p->area[key.root] == key.area) return true;
+    }
+    return false;
 }
 
 int32_t label_at(const parts *p, int32_t x, int32_t y)
@@ -124,6 +126,7 @@ jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *o
     parts p = {0};
     TRY(label_components(ctx, drawing, true, 4, &p.c));
     p.alive = p.c.count;
+    if (p.alive < 2) goto done; // there is nothing to join
     p.run_count = p.c.run_count;
     p.run_capacity = (size_t)p.c.run_count;
     TRY(ALLOCATE(ctx, p.parent, p.c.count));

@@ -32,8 +32,8 @@ void parts_free(jali_context *ctx, parts *p);
 int32_t label_at(const parts *p, int32_t x, int32_t y);
 /// The root of the part with that label.
 int32_t root_of_label(parts *p, int32_t label);
-/// Take the smallest part (by area, then by label) out of the queue.
-int32_t smallest_part(parts *p);
+/// Take the smallest part (by area, then by label) out of the queue; false: none is left there.
+bool smallest_part(parts *p, int32_t *root);
 /// Give a part a bridge pixel.
 jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y);
 /// Make two parts one; returns the root.

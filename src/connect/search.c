@@ -13,7 +13,8 @@
 
 #include <stdlib.h>
 
-enum { FIRST_RIM_PX = 14, FIRST_JUMP_PX = 8, MOST_JUMP_PX = 63 };
+enum { FIRST_RIM_PX = 14, RIM_TIMES = 4, MOST_NEAR_RIM_PX = 224 };
+enum { FIRST_JUMP_PX = 8, MOST_JUMP_PX = 63, MOST_NEAR_WORDS = 1 << 15 };
 
 typedef struct window {
     int32_t x0, y0;      // upper left corner in the picture, x0 a multiple of 64
@@ -236,16 +237,80 @@ static jali_status widen(jali_context *ctx, const window *narrow, const window *
     return JALI_OK;
 }
 
-static jali_status make_room(jali_context *ctx, search *s, const window *w)
+static jali_status reserve(jali_context *ctx, search *s, const window *w)
 {
     jali_status status;
-    size_t count = (size_t)word_count(w);
+    int64_t count = word_count(w);
     TRY(GROW(ctx, s->picture, s->picture_capacity, count));
     TRY(GROW(ctx, s->grown, s->grown_capacity, count));
     TRY(GROW(ctx, s->next, s->next_capacity, count));
     TRY(GROW(ctx, s->spare, s->spare_capacity, count));
-    memset(s->next, 0, count * sizeof *s->next);
-    memset(s->spare, 0, count * sizeof *s->spare);
+done:
+    return status;
+}
+
+static jali_status make_room(jali_context *ctx, search *s, const window *w)
+{
+    jali_status status = reserve(ctx, s, w);
+    if (status != JALI_OK) return status;
+    memset(s->next, 0, (size_t)word_count(w) * sizeof *s->next);
+    memset(s->spare, 0, (size_t)word_count(w) * sizeof *s->spare);
+    return JALI_OK;
+}
+
+static window first_window(const jali_bitmap *solid, const parts *p, int32_t root)
+{
+    return window_around(solid, p->box[root], FIRST_RIM_PX);
+}
+
+// Step on until another part is met, false when the rim is used up or we are to stop.
+static bool meets_within(const jali_context *ctx, const window *w, int32_t limit, jali_metric metric,
+                         search *s)
+{
+    for (int32_t most = limit; s->steps < limit && !stopping(ctx);) {
+        int32_t jump = jump_length(metric, s->steps, MIN(most, limit - s->steps));
+        if (!take_steps(w, s, metric, s->steps, jump)) {
+            swap_grown(s);
+            s->steps += jump;
+        } else if (jump > 1) {
+            most = jump / 2; // a part is met within the jump: halve it
+        } else {
+            s->steps++;
+            return true;
+        }
+    }
+    return false;
+}
+
+// Search from window to window, the widest with a rim of most_rim at most; *found is false when that was all.
+static jali_status search_within(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                                 jali_metric metric, int32_t most_rim, search *s, jali_bridge *bridge,
+                                 bool *found)
+{
+    jali_status status;
+    int32_t longest = solid->width_px + solid->height_px;
+    window first = first_window(solid, p, root), w = first;
+    *found = false;
+    s->steps = 0;
+    TRY(make_room(ctx, s, &w));
+    TRY(GROW(ctx, s->own, s->own_capacity, word_count(&first)));
+    draw_part(p, root, &first, s->own);
+    memcpy(s->grown, s->own, (size_t)word_count(&first) * sizeof *s->grown);
+    for (int32_t rim = FIRST_RIM_PX; !stopping(ctx);) {
+        draw_picture(solid, &w, s->picture);
+        if (meets_within(ctx, &w, MIN(rim, longest), metric, s)) {
+            first_met_pixel(&w, s->picture, s->grown, s->next, bridge->to);
+            nearest_own(&first, s->own, metric, s->steps, bridge->to, bridge->from);
+            *found = true;
+            return JALI_OK;
+        }
+        if (rim > most_rim / RIM_TIMES) return JALI_OK;
+        window narrow = w;
+        rim *= RIM_TIMES;
+        w = window_around(solid, p->box[root], rim);
+        TRY(widen(ctx, &narrow, &w, s));
+        TRY(make_room(ctx, s, &w));
+    }
 done:
     return status;
 }
@@ -253,38 +318,35 @@ done:
 jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
                           jali_metric metric, search *s, jali_bridge *bridge)
 {
+    bool found;
+    jali_status status = search_within(ctx, solid, p, root, metric, INT32_MAX, s, bridge, &found);
+    return status == JALI_OK && !found ? step(ctx, "connect", 0) : status;
+}
+
+jali_status make_room_near(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                           search *s)
+{
     jali_status status;
-    int32_t longest = solid->width_px + solid->height_px, rim = FIRST_RIM_PX, k = 0;
-    window first = window_around(solid, p->box[root], rim), w = first;
-    TRY(make_room(ctx, s, &w));
-    TRY(GROW(ctx, s->own, s->own_capacity, word_count(&first)));
-    draw_part(p, root, &first, s->own);
-    memcpy(s->grown, s->own, (size_t)word_count(&first) * sizeof *s->grown);
-    for (;;) {
-        draw_picture(solid, &w, s->picture);
-        int32_t limit = MIN(rim, longest), most = limit;
-        while (k < limit) {
-            if (stopping(ctx)) TRY(step(ctx, "connect", 0));
-            int32_t jump = jump_length(metric, k, MIN(most, limit - k));
-            if (!take_steps(&w, s, metric, k, jump)) {
-                swap_grown(s);
-                k += jump;
-            } else if (jump > 1) {
-                most = jump / 2; // a part is met within the jump: halve it
-            } else {
-                first_met_pixel(&w, s->picture, s->grown, s->next, bridge->to);
-                nearest_own(&first, s->own, metric, k + 1, bridge->to, bridge->from);
-                return JALI_OK;
-            }
-        }
-        window narrow = w;
-        rim *= 4;
-        w = window_around(solid, p->box[root], rim);
-        TRY(widen(ctx, &narrow, &w, s));
-        TRY(make_room(ctx, s, &w));
+    window first = first_window(solid, p, root), near = first;
+    s->near_rim = 0;
+    for (int32_t rim = FIRST_RIM_PX; rim <= MOST_NEAR_RIM_PX; rim *= RIM_TIMES) {
+        window wider = window_around(solid, p->box[root], rim);
+        if (word_count(&wider) > MOST_NEAR_WORDS) break;
+        near = wider;
+        s->near_rim = rim;
     }
+    if (s->near_rim == 0) return JALI_OK;
+    TRY(GROW(ctx, s->own, s->own_capacity, word_count(&first)));
+    TRY(reserve(ctx, s, &near));
 done:
     return status;
+}
+
+bool nearest_near(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                  jali_metric metric, search *s, jali_bridge *bridge)
+{
+    bool found;
+    return search_within(ctx, solid, p, root, metric, s->near_rim, s, bridge, &found) == JALI_OK && found;
 }
 
 void search_free(jali_context *ctx, search *s)

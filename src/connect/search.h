@@ -9,6 +9,8 @@
 typedef struct search {
     uint64_t *picture, *own, *grown, *next, *spare; // [capacity] words each
     size_t picture_capacity, own_capacity, grown_capacity, next_capacity, spare_capacity;
+    int32_t near_rim; // as far as nearest_near looks
+    int32_t steps;    // to what was found last
 } search;
 
 /// Find the white pixel outside the part `root` that is nearest to it, and the part's pixel nearest to that.
@@ -16,6 +18,14 @@ typedef struct search {
 ///   fails  JALI_NO_MEMORY, JALI_CANCELLED
 jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
                           jali_metric metric, search *s, jali_bridge *bridge);
+
+/// The same among what lies near, in scratch that is there: for threads, which allocate nothing.
+///   out    false: nothing is so near, or the run was cancelled
+bool nearest_near(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                  jali_metric metric, search *s, jali_bridge *bridge);
+/// Get the scratch for that, and s->near_rim: how near; 0 where the part is too large.
+jali_status make_room_near(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                           search *s);
 void search_free(jali_context *ctx, search *s);
 
 #endif

@@ -1,5 +1,5 @@
 // Bitmaps as values: create, copy, free.
-#include <jali/bitmap.h>
+#include "raster/raster.h"
 #include "base/base.h"
 
 static jali_status create(jali_context *ctx, int32_t width_px, int32_t height_px, bool cleared,
@@ -26,8 +26,7 @@ jali_status jali_bitmap_copy(jali_context *ctx, const jali_bitmap *from, jali_bi
 {
     jali_bitmap copy;
     jali_status status = create(ctx, from->width_px, from->height_px, false, &copy);
-    if (status == JALI_OK && from->word)
-        memcpy(copy.word, from->word, (size_t)(from->stride * from->height_px) * sizeof *copy.word);
+    if (status == JALI_OK) copy_pixels(ctx, from, &copy);
     *to = copy;
     return status;
 }

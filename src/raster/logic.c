@@ -2,14 +2,16 @@
 #include "raster/raster.h"
 #include "base/base.h"
 
-enum { BAND_WORDS = 1 << 15 }; // 256 KiB of each operand: fits the second-level cache
+#include <stdatomic.h>
+
+enum { BAND_WORDS = 1 << 14 }; // 128 KiB of each operand: they fit the second-level cache
 
 typedef struct logic_job {
     bitmap_rule rule;
     const uint64_t *a, *b;
     uint64_t *dst;
     int64_t words;
-    int64_t *count;
+    atomic_llong count;
 } logic_job;
 
 VECTORISED static void combine_words(bitmap_rule rule, const uint64_t *a, const uint64_t *b, uint64_t *dst,
@@ -78,8 +80,21 @@ static void combine_band(void *shared, int32_t band)
 void combine(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b,
              jali_bitmap *dst)
 {
-    logic_job job = {rule, a->word, b->word, dst->word, word_count(a), NULL};
+    logic_job job = {rule, a->word, b->word, dst->word, word_count(a), 0};
     parallel(ctx, band_count(job.words), combine_band, &job);
+}
+
+static void copy_band(void *shared, int32_t band)
+{
+    const logic_job *job = shared;
+    int64_t from = (int64_t)band * BAND_WORDS;
+    memcpy(job->dst + from, job->a + from, (size_t)MIN(BAND_WORDS, job->words - from) * sizeof *job->dst);
+}
+
+void copy_pixels(jali_context *ctx, const jali_bitmap *src, jali_bitmap *dst)
+{
+    logic_job job = {.a = src->word, .dst = dst->word, .words = word_count(src)};
+    parallel(ctx, band_count(job.words), copy_band, &job);
 }
 
 // Bits beyond the width stay 0 whatever is written into them.
@@ -108,10 +123,19 @@ void fill(jali_context *ctx, jali_bitmap *dst, bool white)
     if (white) clear_padding(dst);
 }
 
+static void count_band(void *shared, int32_t band)
+{
+    logic_job *job = shared;
+    int64_t from = (int64_t)band * BAND_WORDS;
+    int64_t found = count_words(job->rule, job->a + from, job->b + from, MIN(BAND_WORDS, job->words - from));
+    atomic_fetch_add(&job->count, found);
+}
+
 int64_t count_combined(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b)
 {
-    (void)ctx;
-    return count_words(rule, a->word, b->word, word_count(a));
+    logic_job job = {.rule = rule, .a = a->word, .b = b->word, .words = word_count(a)};
+    parallel(ctx, band_count(job.words), count_band, &job);
+    return job.count;
 }
 
 int64_t count_white(jali_context *ctx, const jali_bitmap *a)

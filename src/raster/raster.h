@@ -14,6 +14,7 @@ typedef enum bitmap_rule { RULE_AND, RULE_OR, RULE_XOR, RULE_AND_NOT, RULE_OR_NO
 /// dst = a rule b.
 void combine(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a, const jali_bitmap *b,
              jali_bitmap *dst);
+void copy_pixels(jali_context *ctx, const jali_bitmap *src, jali_bitmap *dst);
 void invert(jali_context *ctx, const jali_bitmap *a, jali_bitmap *dst);
 void fill(jali_context *ctx, jali_bitmap *dst, bool white);
 int64_t count_white(jali_context *ctx, const jali_bitmap *a);

@@ -72,6 +72,21 @@ static bool words_differ(const uint64_t *a, const uint64_t *b, int64_t count)
     return memcmp(a, b, (size_t)count * sizeof *a) != 0;
 }
 
+typedef struct comparison {
+    const jali_bitmap *now, *then;
+    bool *differs; // [height_px]
+} comparison;
+
+enum { BAND_ROWS = 256 };
+
+static void compare_rows(void *shared, int32_t band)
+{
+    const comparison *c = shared;
+    int64_t stride = c->now->stride;
+    for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, c->now->height_px); y++)
+        c->differs[y] = words_differ(c->now->word + y * stride, c->then->word + y * stride, stride);
+}
+
 // What of the result can differ, as src differs from `before`.
 static jali_status find_blocks(jali_context *ctx, const field *f, const jali_bitmap *before,
                                const jali_bitmap *src, blocks *b)
@@ -81,11 +96,14 @@ static jali_status find_blocks(jali_context *ctx, const field *f, const jali_bit
     int32_t reach = MAX(f->above, f->below) + 1, height = src->height_px; // + 1: even elements are reflected
     int64_t aside = (MAX(f->left, f->right) + 64) / 64, stride = src->stride;
     int32_t *last; // [columns]
+    comparison c = {src, before, NULL};
     TRY(ARENA(ctx, last, stride / COLUMN));
+    TRY(ARENA(ctx, c.differs, height));
+    parallel(ctx, (height + BAND_ROWS - 1) / BAND_ROWS, compare_rows, &c);
     for (int64_t i = 0; i < stride / COLUMN; i++) last[i] = -1;
     for (int32_t y = 0; y < height; y++) {
         const uint64_t *now = src->word + y * stride, *then = before->word + y * stride;
-        if (!words_differ(now, then, stride)) continue;
+        if (!c.differs[y]) continue;
         for (int64_t column = 0; column < stride; column += COLUMN) {
             int64_t first = MAX(column - aside, 0), end = MIN(column + COLUMN + aside, stride);
             if (words_differ(now + first, then + first, end - first))
@@ -105,12 +123,6 @@ static void copy_block(const jali_bitmap *from, const word_block *b, jali_bitmap
                (size_t)b->words * sizeof *to->word);
 }
 
-static void copy_all(const jali_bitmap *from, jali_bitmap *to)
-{
-    word_block all = {0, from->stride, 0, from->height_px};
-    copy_block(from, &all, to);
-}
-
 // Make all of dst, and remember it.
 static jali_status morph_anew(jali_context *ctx, morph_rule rule, const jali_bitmap *src, const field *f,
                               bool outside, known *k, jali_bitmap *dst)
@@ -120,8 +132,8 @@ static jali_status morph_anew(jali_context *ctx, morph_rule rule, const jali_bit
     TRY(morph_blocks(ctx, rule, src, &f->whole, outside, NULL, 0, dst));
     k->outside = outside;
     if (same_size) {
-        copy_all(src, &k->src);
-        copy_all(dst, &k->dst);
+        copy_pixels(ctx, src, &k->src);
+        copy_pixels(ctx, dst, &k->dst);
     } else {
         forget(ctx, k);
         TRY(jali_bitmap_copy(ctx, src, &k->src));
@@ -135,7 +147,7 @@ done:
 static jali_status morph_changes(jali_context *ctx, morph_rule rule, const jali_bitmap *src, const field *f,
                                  bool outside, const blocks *b, known *k, jali_bitmap *dst)
 {
-    copy_all(&k->dst, dst);
+    copy_pixels(ctx, &k->dst, dst);
     if (b->count == 0) return JALI_OK;
     jali_status status = morph_blocks(ctx, rule, src, &f->whole, outside, b->block, b->count, dst);
     for (int32_t i = 0; status == JALI_OK && i < b->count; i++) {

@@ -380,7 +380,7 @@ static jali_status run_varying(jali_context *ctx, const jali_bitmap *src, uint64
         TRY(jali_bitmap_copy(ctx, src, &now)); // dst may be src
         if (is_known(k, src, outside)) {
             TRY(find_active(ctx, v->f, src, k, v));
-            memcpy(v->dst->word, k->dst.word, (size_t)(src->stride * src->height_px) * sizeof *src->word);
+            copy_pixels(ctx, &k->dst, v->dst);
         }
     }
     parallel(ctx, parts, work, v);

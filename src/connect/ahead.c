@@ -1,0 +1,122 @@
+// Algorithm 2 joins one part after the other, but where each goes can be found before its turn.
+//
+// Method:  the searches of the next parts in the queue run side by side. One still holds when its turn comes
+//          if the part is as it was and no bridge laid since comes as near to it as what was found. Others
+//          are made again, so the bridges are those of the plain algorithm.
+// Checked: tests/test_connect.c: greedy bridges and equal bytes with any number of threads.
+#include "connect/ahead.h"
+#include "base/base.h"
+
+void ahead_create(ahead *a)
+{
+    *a = (ahead){0};
+    for (int32_t i = 0; i < AHEAD; i++) a->each[i].root = -1;
+}
+
+void ahead_free(jali_context *ctx, ahead *a)
+{
+    for (int32_t i = 0; i < AHEAD; i++) search_free(ctx, &a->each[i].s);
+    search_free(ctx, &a->own);
+}
+
+static bool is_current(const foresight *f, const parts *p)
+{
+    return f->root >= 0 && p->parent[f->root] == f->root && p->area[f->root] == f->area;
+}
+
+// Whether the bridge lies, in part, within `reach` rows and columns of the box.
+static bool comes_near(const jali_bridges *laid, int32_t bridge, const int32_t box[4], int32_t reach)
+{
+    int32_t from[2], to[2];
+    for (int32_t leg = 0; jali_bridge_leg(laid, bridge, leg, from, to); leg++)
+        if (MIN(from[0], to[0]) < box[2] + reach && MAX(from[0], to[0]) >= box[0] - reach &&
+            MIN(from[1], to[1]) < box[3] + reach && MAX(from[1], to[1]) >= box[1] - reach)
+            return true;
+    return false;
+}
+
+static bool still_holds(const foresight *f, const parts *p, const jali_bridges *laid)
+{
+    if (!f->found) return false;
+    for (int32_t i = f->laid; i < laid->count; i++)
+        if (comes_near(laid, i, p->box[f->root], f->s.steps)) return false;
+    return true;
+}
+
+static foresight *foresight_of(ahead *a, const parts *p, int32_t root)
+{
+    for (int32_t i = 0; i < AHEAD; i++)
+        if (a->each[i].root == root && is_current(&a->each[i], p)) return &a->each[i];
+    return NULL;
+}
+
+static void search_one(void *shared, int32_t index)
+{
+    ahead *a = shared;
+    foresight *f = &a->each[a->asked[index]];
+    f->found = nearest_near(a->ctx, a->solid, a->p, f->root, a->metric, &f->s, &f->bridge);
+}
+
+// Put the part into a place that is free.
+static jali_status ask_for(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                           int32_t laid, int32_t *place, ahead *a)
+{
+    while (is_current(&a->each[*place], p)) ++*place;
+    foresight *f = &a->each[*place];
+    jali_status status = make_room_near(ctx, solid, p, root, &f->s);
+    if (status != JALI_OK || f->s.near_rim == 0) return status;
+    *f = (foresight){.root = root, .laid = laid, .area = p->area[root], .s = f->s};
+    a->asked[a->asked_count++] = (*place)++;
+    return JALI_OK;
+}
+
+// The part whose turn it is and, in the free places, the next ones in the queue, which stay there.
+static jali_status ask_for_next(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
+                                const jali_bridges *laid, int32_t free_places, ahead *a)
+{
+    jali_status status;
+    int32_t next[AHEAD], count = 0, place = 0;
+    a->asked_count = 0;
+    TRY(ask_for(ctx, solid, p, root, laid->count, &place, a));
+    while (count < free_places - 1 && smallest_part(p, &next[count])) count++;
+    for (int32_t i = 0; i < count; i++) {
+        TRY(queue_part(ctx, p, next[i]));
+        if (!foresight_of(a, p, next[i])) TRY(ask_for(ctx, solid, p, next[i], laid->count, &place, a));
+    }
+done:
+    return status;
+}
+
+static jali_status search_side_by_side(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
+                                       jali_metric metric, const jali_bridges *laid, ahead *a)
+{
+    int32_t free_places = 0;
+    for (int32_t i = 0; i < AHEAD; i++) free_places += !is_current(&a->each[i], p);
+    if (free_places < AHEAD / 2) return JALI_OK; // one search is no work for several threads
+    jali_status status = ask_for_next(ctx, solid, p, root, laid, free_places, a);
+    if (status != JALI_OK) return status;
+    a->ctx = ctx;
+    a->solid = solid;
+    a->p = p;
+    a->metric = metric;
+    parallel(ctx, a->asked_count, search_one, a);
+    return JALI_OK;
+}
+
+jali_status nearest_in_turn(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
+                            jali_metric metric, const jali_bridges *laid, ahead *a, jali_bridge *bridge)
+{
+    jali_status status = JALI_OK;
+    if (threads_of(ctx) > 1 && !foresight_of(a, p, root))
+        TRY(search_side_by_side(ctx, solid, p, root, metric, laid, a));
+    foresight *f = foresight_of(a, p, root);
+    if (f && still_holds(f, p, laid)) {
+        *bridge = f->bridge;
+        f->root = -1;
+        return JALI_OK;
+    }
+    if (f) f->root = -1;
+    TRY(nearest_other(ctx, solid, p, root, metric, &a->own, bridge));
+done:
+    return status;
+}

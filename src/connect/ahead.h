@@ -1,0 +1,36 @@
+// Searches made before it is their turn, side by side. Internal to connect.
+#ifndef CONNECT_AHEAD_H
+#define CONNECT_AHEAD_H
+
+#include "connect/search.h"
+
+enum { AHEAD = 16 };
+
+/// What a part's search found, as the picture was after `laid` bridges; root < 0: nothing.
+typedef struct foresight {
+    int32_t root, laid;
+    int64_t area;
+    bool found;
+    jali_bridge bridge;
+    search s;
+} foresight;
+
+typedef struct ahead {
+    foresight each[AHEAD];
+    search own;                        // of a part that was not foreseen
+    int32_t asked[AHEAD], asked_count; // those that are searched for now
+    jali_context *ctx;
+    const jali_bitmap *solid;
+    const parts *p;
+    jali_metric metric;
+} ahead;
+
+/// As nearest_other, for the part whose turn it is; those whose turns come next are searched for at the same
+/// time. What is found is the same for any number of threads.
+///   in     laid      the bridges laid so far
+jali_status nearest_in_turn(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
+                            jali_metric metric, const jali_bridges *laid, ahead *a, jali_bridge *bridge);
+void ahead_create(ahead *a);
+void ahead_free(jali_context *ctx, ahead *a);
+
+#endif
