@@ -5,10 +5,9 @@
 //          its processes becomes jali-mpi before it has looked at anything else, and MPI sees no difference.
 // Checked: mpi/cli.sh; tests/test_cli.c: without jali-mpi.
 #include "processes.h"
+#include "beside.h"
 #include "sparse/solver.h"
 
-#include <errno.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -28,18 +27,10 @@ static bool asks_for_petsc(int argc, char **argv)
 // Comes back only when there is no such program.
 static void become(char **argv)
 {
-    static const char *const places[] = {"jali-mpi", JALI_LIBEXEC "/jali-mpi"}; // from where jali lies
-    char folder[PATH_MAX], path[PATH_MAX + 64];
-    ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
-    if (length <= 0) return;
-    folder[length] = 0;
-    *strrchr(folder, '/') = 0;
+    char path[PATH_MAX];
     setenv("OPENBLAS_NUM_THREADS", "1", 0); // processes share the processors already
     setenv("OMP_NUM_THREADS", "1", 0);
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, places[i]);
-        execv(path, argv);
-    }
+    for (int32_t place = 0; path_beside(place, "jali-mpi", path); place++) execv(path, argv);
 }
 
 bool right_program(const verb *v, int argc, char **argv, char sentence[SENTENCE_BYTES])
