@@ -11,10 +11,12 @@
 #include "connect/search.h"
 #include "base/base.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum { FIRST_RIM_PX = 14, RIM_TIMES = 4, MOST_NEAR_RIM_PX = 224 };
 enum { FIRST_JUMP_PX = 8, MOST_JUMP_PX = 63, MOST_NEAR_WORDS = 1 << 15 };
+enum { BAND_WORDS = 1 << 14 }; // of a window, for one thread at a time
 
 typedef struct window {
     int32_t x0, y0;      // upper left corner in the picture, x0 a multiple of 64
@@ -85,15 +87,6 @@ VECTORISED static bool grow_all(const uint64_t *before, const uint64_t *picture,
     return met != 0;
 }
 
-static bool grow(const window *w, const uint64_t *picture, const uint64_t *before, uint64_t *after,
-                 bool square)
-{
-    int64_t pitch = w->words + 2, first = pitch + 1, n = w->rows * pitch - 2;
-    bool met = grow_all(before + first, picture + first, after + first, pitch, n, square);
-    for (int32_t y = 0; y < w->rows; y++) row_of(w, after, y)[-1] = row_of(w, after, y)[w->words] = 0;
-    return met;
-}
-
 // out = a, a moved by `px` (1 .. 63) to both sides and, for a cross, the rows above and below.
 VECTORISED static void spread_row(const uint64_t *a, const uint64_t *above, const uint64_t *below,
                                   uint64_t *out, int64_t n, int32_t px)
@@ -123,23 +116,62 @@ static const uint64_t *row_or_nothing(const window *w, uint64_t *words, int32_t 
     return row_of(w, words, y < 0 || y >= w->rows ? -1 : y);
 }
 
-// A ball of crosses of radius a grows to a + px, px <= a, by the five copies of it px apart.
-static void jump_cross(const window *w, uint64_t *from, uint64_t *to, int32_t px)
+// A pass over the rows of a window: side by side where it is large, when nothing else is.
+typedef struct pass {
+    const window *w;
+    uint64_t *from, *to; // planes
+    const uint64_t *picture;
+    int32_t px; // how far
+    bool square;
+    atomic_bool met;
+    void (*rows)(struct pass *p, int32_t y0, int32_t y1);
+    int32_t band_rows;
+} pass;
+
+static void pass_band(void *shared, int32_t band)
 {
-    for (int32_t y = 0; y < w->rows; y++)
-        spread_row(row_of(w, from, y), row_or_nothing(w, from, y - px), row_or_nothing(w, from, y + px),
-                   row_of(w, to, y), w->words, px);
+    pass *p = shared;
+    p->rows(p, band * p->band_rows, MIN((band + 1) * p->band_rows, p->w->rows));
 }
 
-// A ball of squares of radius b grows to b + px, px <= 2 b + 1: along rows, then along columns.
-static void jump_square(const window *w, uint64_t *words, uint64_t *spare, int32_t px)
+// Whether another part was met, where the pass looks for that.
+static bool run_pass(jali_context *ctx, pass p, void (*rows)(pass *p, int32_t y0, int32_t y1))
 {
-    const uint64_t *nothing = row_of(w, words, -1);
-    for (int32_t y = 0; y < w->rows; y++)
-        spread_row(row_of(w, words, y), nothing, nothing, row_of(w, spare, y), w->words, px);
-    for (int32_t y = 0; y < w->rows; y++)
-        join_row(row_of(w, spare, y), row_or_nothing(w, spare, y - px), row_or_nothing(w, spare, y + px),
-                 row_of(w, words, y), w->words);
+    p.rows = rows;
+    p.band_rows = MAX(BAND_WORDS / (p.w->words + 2), 1);
+    parallel(ctx, (p.w->rows + p.band_rows - 1) / p.band_rows, pass_band, &p);
+    return p.met;
+}
+
+static void grow_rows(pass *p, int32_t y0, int32_t y1)
+{
+    int64_t pitch = p->w->words + 2, first = (y0 + 1) * pitch + 1, n = (y1 - y0) * pitch - 2;
+    if (grow_all(p->from + first, p->picture + first, p->to + first, pitch, n, p->square)) p->met = true;
+    for (int32_t y = y0; y < y1; y++) row_of(p->w, p->to, y)[-1] = row_of(p->w, p->to, y)[p->w->words] = 0;
+}
+
+static void spread_rows(pass *p, int32_t y0, int32_t y1)
+{
+    const window *w = p->w;
+    const uint64_t *nothing = row_of(w, p->from, -1);
+    for (int32_t y = y0; y < y1; y++)
+        spread_row(row_of(w, p->from, y), p->square ? nothing : row_or_nothing(w, p->from, y - p->px),
+                   p->square ? nothing : row_or_nothing(w, p->from, y + p->px), row_of(w, p->to, y), w->words,
+                   p->px);
+}
+
+static void join_rows(pass *p, int32_t y0, int32_t y1)
+{
+    const window *w = p->w;
+    for (int32_t y = y0; y < y1; y++)
+        join_row(row_of(w, p->from, y), row_or_nothing(w, p->from, y - p->px),
+                 row_or_nothing(w, p->from, y + p->px), row_of(w, p->to, y), w->words);
+}
+
+static void meet_rows(pass *p, int32_t y0, int32_t y1)
+{
+    int64_t pitch = p->w->words + 2, first = (y0 + 1) * pitch;
+    if (meets(p->from + first, p->picture + first, p->to + first, (y1 - y0) * pitch)) p->met = true;
 }
 
 // The first pixel in raster order that a step met.
@@ -200,17 +232,26 @@ static int32_t jump_length(jali_metric metric, int32_t k, int32_t most)
     return 1;
 }
 
-// `jump` steps after the first k, from `grown` into `next`; returns whether they meet another part.
-static bool take_steps(const window *w, search *s, jali_metric metric, int32_t k, int32_t jump)
+// `jump` steps after the first k, from `grown` into `next`; returns whether they meet another part. A ball of
+// crosses of radius a grows to a + px, px <= a, by the five copies of it px apart; one of squares of radius b
+// to b + px, px <= 2 b + 1, along rows, then along columns.
+static bool take_steps(jali_context *ctx, const window *w, search *s, jali_metric metric, int32_t k,
+                       int32_t jump)
 {
     int32_t squares = square_steps(metric, k + jump) - square_steps(metric, k), crosses = jump - squares;
-    if (jump == 1) return grow(w, s->picture, s->grown, s->next, squares == 1);
-    if (crosses > 0)
-        jump_cross(w, s->grown, s->next, crosses);
-    else
-        memcpy(s->next, s->grown, (size_t)word_count(w) * sizeof *s->next);
-    if (squares > 0) jump_square(w, s->next, s->spare, squares);
-    return meets(s->grown, s->picture, s->next, word_count(w));
+    pass p = {.w = w, .from = s->grown, .to = s->next, .picture = s->picture, .square = squares > 0};
+    if (jump == 1) return run_pass(ctx, p, grow_rows);
+    uint64_t *crossed = s->grown;
+    if (crosses > 0) {
+        run_pass(ctx, (pass){.w = w, .from = crossed, .to = s->next, .px = crosses}, spread_rows);
+        crossed = s->next;
+    }
+    if (squares > 0) {
+        run_pass(ctx, (pass){.w = w, .from = crossed, .to = s->spare, .px = squares, .square = true},
+                 spread_rows);
+        run_pass(ctx, (pass){.w = w, .from = s->spare, .to = s->next, .px = squares}, join_rows);
+    }
+    return run_pass(ctx, p, meet_rows);
 }
 
 static void swap_grown(search *s)
@@ -264,12 +305,11 @@ static window first_window(const jali_bitmap *solid, const parts *p, int32_t roo
 }
 
 // Step on until another part is met, false when the rim is used up or we are to stop.
-static bool meets_within(const jali_context *ctx, const window *w, int32_t limit, jali_metric metric,
-                         search *s)
+static bool meets_within(jali_context *ctx, const window *w, int32_t limit, jali_metric metric, search *s)
 {
     for (int32_t most = limit; s->steps < limit && !stopping(ctx);) {
         int32_t jump = jump_length(metric, s->steps, MIN(most, limit - s->steps));
-        if (!take_steps(w, s, metric, s->steps, jump)) {
+        if (!take_steps(ctx, w, s, metric, s->steps, jump)) {
             swap_grown(s);
             s->steps += jump;
         } else if (jump > 1) {
