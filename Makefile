@@ -8,7 +8,7 @@
 #   make docs       renew what the docs quote               make results    the tables of docs/results.md
 PACKAGES := cmake ninja-build gcc g++ pkg-config libpng-dev libjpeg62-turbo-dev libwebp-dev librsvg2-dev \
             libcairo2-dev libdeflate-dev libzip-dev libexpat1-dev libjansson-dev libcmocka-dev \
-            libmetis-dev libopenblas-dev libmicrohttpd-dev
+            libopenblas-dev libmicrohttpd-dev
 FUZZ_PACKAGES     := clang libclang-rt-dev
 JUDGE_PACKAGES    := admesh prusa-slicer calculix-ccx
 LINT_PACKAGES     := clang-format clang-tidy cppcheck

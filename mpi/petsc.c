@@ -203,11 +203,12 @@ done:
     return status;
 }
 
-jali_status solver_open(jali_context *ctx, const block_matrix *a, solver **out)
+jali_status solver_open(jali_context *ctx, const block_matrix *a, const double (*place)[3], solver **out)
 {
     jali_status status;
     solver *s;
     *out = NULL;
+    (void)place; // PT-SCOTCH goes by the graph
     begin_petsc();
     TRY(solver_agree(ctx, step(ctx, "order", 0)));
     TRY(solver_agree(ctx, allocate_cleared(ctx, &s, 1, sizeof *s)));

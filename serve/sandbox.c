@@ -84,7 +84,6 @@ static const struct sock_filter program[] = {
     PERMIT(__NR_sysinfo), // qsort
     PERMIT(__NR_rseq),    // a thread that has only just begun
     PERMIT(__NR_set_robust_list),
-    PERMIT(__NR_rt_sigaction), // METIS
     PERMIT(__NR_rt_sigprocmask),
     PERMIT(__NR_rt_sigreturn),
     PERMIT(__NR_restart_syscall),

@@ -230,7 +230,7 @@ static inline jali_status solve_model(jali_context *with, shell_model *m)
     for (int32_t n = 0, at = 0; n < m->node_count; n++)
         for (int k = 0; k < 6; k++)
             if (!(m->held[n] >> k & 1)) x[at++] = m->load[n][k];
-    TRY(solver_open(with, &a, &s));
+    TRY(solver_open(with, &a, (const double(*)[3])m->node, &s));
     TRY(solver_factor(with, s, &weak));
     TRY(solver_solve(with, s, 1, x));
     for (int32_t n = 0, at = 0; n < m->node_count; n++)

@@ -1,6 +1,7 @@
 // Sparse factors: solutions against products, over meshes and seeds; the fill that the order promises.
 #include "testing.h"
 
+#include "sparse/separate.h"
 #include "sparse/sparse.h"
 
 #include <math.h>
@@ -163,9 +164,72 @@ TEST(every_allocation_refused_once)
     refuse_each_allocation(factor_some, NULL);
 }
 
+// --- Separators
+
+enum { BETWEEN = 9, ENDS = 4, ALL = BETWEEN + ENDS };
+
+// A graph of nodes between two ends, edges at random; no edge from end to end.
+static void random_ends(uint64_t *seed, int32_t density, bool edge[ALL][ALL], int32_t side[ALL])
+{
+    memset(edge, 0, ALL * sizeof *edge);
+    for (int32_t i = 0; i < ALL; i++) side[i] = i < BETWEEN ? MIDDLE : i % 2 ? HIGH : LOW;
+    for (int32_t i = 0; i < ALL; i++)
+        for (int32_t k = 0; k < i; k++)
+            if (side[i] + side[k] != LOW + HIGH || side[i] == side[k])
+                edge[i][k] = edge[k][i] = (int32_t)((next_random(seed) >> 40) % 10) < density;
+}
+
+static bool parts(bool edge[ALL][ALL], const int32_t side[ALL], uint32_t without)
+{
+    bool low[ALL], grown = true;
+    for (int32_t i = 0; i < ALL; i++) low[i] = side[i] == LOW;
+    while (grown) {
+        grown = false;
+        for (int32_t i = 0; i < ALL; i++)
+            for (int32_t k = 0; k < ALL; k++) {
+                if (!low[i] || low[k] || !edge[i][k] || (k < BETWEEN && without >> k & 1)) continue;
+                if (side[k] == HIGH) return false;
+                low[k] = grown = true;
+            }
+    }
+    return true;
+}
+
+TEST(no_set_of_nodes_parts_two_ends_with_fewer)
+{
+    uint64_t seed = 11;
+    for (int32_t round = 0; round < 600; round++) {
+        bool edge[ALL][ALL];
+        int32_t side[ALL], was[ALL], first[ALL + 1], beside[ALL * ALL], name[ALL], count = 0, held = 0;
+        int32_t last[BETWEEN], next[BETWEEN], distance[BETWEEN], tried[BETWEEN], path[2 * BETWEEN];
+        uint8_t seen[2 * BETWEEN];
+        random_ends(&seed, 1 + round % 6, edge, side);
+        memcpy(was, side, sizeof was);
+        for (int32_t i = 0; i < ALL; i++) {
+            first[i] = count;
+            name[i] = i;
+            for (int32_t k = 0; k < ALL; k++)
+                if (edge[i][k]) beside[count++] = k;
+        }
+        first[ALL] = count;
+        node_graph g = {ALL, name, first, beside};
+        separate(&g, BETWEEN, name, name, side, &(separate_desk){last, next, distance, tried, path, seen});
+        for (int32_t i = 0; i < ALL; i++) {
+            CHECK(i < BETWEEN ? side[i] == LOW || side[i] == HIGH || side[i] == MIDDLE : side[i] == was[i]);
+            held += side[i] == MIDDLE;
+            for (int32_t k = 0; k < ALL; k++) CHECK(!edge[i][k] || side[i] != LOW || side[k] != HIGH);
+        }
+        int32_t least = BETWEEN;
+        for (uint32_t set = 0; set < 1u << BETWEEN; set++)
+            if (__builtin_popcount(set) < least && parts(edge, was, set)) least = __builtin_popcount(set);
+        CHECK_INT(held, least);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_set_of_nodes_parts_two_ends_with_fewer),
         cmocka_unit_test_setup_teardown(solutions_give_back_the_right_side, open_context, close_context),
         cmocka_unit_test_setup_teardown(the_order_keeps_the_fill_small, open_context, close_context),
         cmocka_unit_test_setup_teardown(an_order_holds_each_row_once, open_context, close_context),

@@ -259,7 +259,7 @@ done:
     return status;
 }
 
-// Follow the tree of METIS's order: the same fill, and each subtree a run.
+// Follow the tree of the order: the same fill, and each subtree a run.
 static void reorder(const block_matrix *a, elimination *e, const int32_t *parent, int32_t *scratch[3])
 {
     int32_t count = a->node_count, *rank = scratch[2];
@@ -272,7 +272,7 @@ static void reorder(const block_matrix *a, elimination *e, const int32_t *parent
         e->start[i + 1] = e->start[i] + a->first[e->node[i] + 1] - a->first[e->node[i]];
 }
 
-jali_status eliminate(jali_context *ctx, const block_matrix *a, elimination *e)
+jali_status eliminate(jali_context *ctx, const block_matrix *a, const double (*place)[3], elimination *e)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
@@ -281,7 +281,7 @@ jali_status eliminate(jali_context *ctx, const block_matrix *a, elimination *e)
     draft *fronts;
     *e = (elimination){0};
     TRY(allocate_order(ctx, e, count));
-    TRY(dissect(ctx, a, e->node));
+    TRY(dissect(ctx, a, place, e->node));
     TRY(ARENA(ctx, p.first, count + 2));
     TRY(ARENA(ctx, p.column, a->row[count]));
     TRY(ARENA(ctx, parent, count));

@@ -31,14 +31,16 @@ static inline int32_t pivots_of(const elimination *e, int32_t front)
 }
 
 /// Order a pattern and find its fronts.
+///   in     place   [node_count] of the nodes: what lies near is joined
 ///   fails  JALI_NO_MEMORY, JALI_LIMIT
 ///   cost   of surfaces: O(n log n)
-jali_status eliminate(jali_context *ctx, const block_matrix *a, elimination *e);
+jali_status eliminate(jali_context *ctx, const block_matrix *a, const double (*place)[3], elimination *e);
 void elimination_free(jali_context *ctx, elimination *e);
 
-/// An order of elimination with little fill: METIS's nested dissection of the nodes.
-///   out    node   [node_count] which node comes as the i-th
-jali_status dissect(jali_context *ctx, const block_matrix *a, int32_t *node);
+/// An order of elimination with little fill: nested dissection of the nodes.
+///   in     place   [node_count]
+///   out    node    [node_count] which node comes as the i-th
+jali_status dissect(jali_context *ctx, const block_matrix *a, const double (*place)[3], int32_t *node);
 
 /// Nodes without unknowns join nothing.
 static inline bool joins(const block_matrix *a, int32_t i, int32_t k)

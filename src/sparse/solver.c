@@ -100,7 +100,7 @@ jali_status solver_residual(jali_context *ctx, solver *s, const double *x, const
     return JALI_OK;
 }
 
-jali_status solver_open(jali_context *ctx, const block_matrix *a, solver **out)
+jali_status solver_open(jali_context *ctx, const block_matrix *a, const double (*place)[3], solver **out)
 {
     jali_status status;
     solver *s = NULL;
@@ -108,7 +108,7 @@ jali_status solver_open(jali_context *ctx, const block_matrix *a, solver **out)
     TRY(step(ctx, "order", 0));
     TRY(allocate_cleared(ctx, &s, 1, sizeof *s));
     s->a = a;
-    TRY(eliminate(ctx, a, &s->order));
+    TRY(eliminate(ctx, a, place, &s->order));
     TRY(own_blocks(ctx, s));
     TRY(ALLOCATE(ctx, s->begin, s->order.front_count));
     TRY(ALLOCATE(ctx, s->subtree, s->order.front_count));

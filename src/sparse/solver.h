@@ -1,6 +1,6 @@
 // The door to the direct solver of structures: A x = b with A symmetric and positive definite. Internal.
 //
-// Behind it: a multifrontal Cholesky factor (fronts.c) over an order of METIS (elimination.c). It took the
+// Behind it: a multifrontal Cholesky factor (fronts.c) over a nested dissection (dissect.c). It took the
 // place of the sequential MUMPS: for a pierced plate of 1.1 million unknowns that one spent 12 us of CPU an
 // unknown from assembly to solution and 1.7 kB, this one 6.3 us and 1.3 kB, on any number of threads, and its
 // limits of time and memory, its cancelling and the place of a weak pivot are ours.
@@ -37,10 +37,11 @@ jali_status solver_residual(jali_context *ctx, solver *s, const double *x, const
 
 /// Order and analyse a pattern; the values are not looked at.
 ///   in     a     must live and keep its pattern as long as the solver does; each node has a block of its own
+///          place   [node_count] of the nodes, mm: the order goes by what lies near
 ///   out    s     close with solver_close; also on failure NULL
 ///   fails  JALI_NO_MEMORY, JALI_LIMIT (memory, time), JALI_CANCELLED
 ///   cost   of surfaces: O(n log n)
-jali_status solver_open(jali_context *ctx, const block_matrix *a, solver **s);
+jali_status solver_open(jali_context *ctx, const block_matrix *a, const double (*place)[3], solver **s);
 
 /// Factor the values that stand in the matrix now; may be called again when they have changed.
 ///   out    weak_row   the unknown where elimination came to an end (JALI_NO_RESULT), else -1

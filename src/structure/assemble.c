@@ -230,6 +230,20 @@ static void choose_unknowns(structure *s, const uint8_t *held)
         }
 }
 
+static jali_status open_solver(jali_context *ctx, structure *s)
+{
+    jali_status status;
+    arena_mark mark = arena_here(ctx);
+    double(*place)[3];
+    TRY(ARENA(ctx, place, s->sheet->node_count));
+    for (int32_t p = 0; p < s->sheet->node_count; p++)
+        memcpy(place[p], s->sheet->node[s->node[p]], sizeof *place);
+    TRY(solver_open(ctx, &s->k, (const double(*)[3])place, &s->solver));
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
 jali_status structure_create(jali_context *ctx, const jali_sheet *sheet, const facet_material *base,
                              const uint8_t *held, bool bending_only, structure *s)
 {
@@ -248,7 +262,7 @@ jali_status structure_create(jali_context *ctx, const jali_sheet *sheet, const f
     TRY(lay_pattern(ctx, &a));
     TRY(assemble(ctx, &a));
     arena_rewind(ctx, mark); // before the factor takes its memory
-    TRY(solver_open(ctx, &s->k, &s->solver));
+    TRY(open_solver(ctx, s));
     TRY(factor(ctx, s));
 done:
     arena_rewind(ctx, mark);
