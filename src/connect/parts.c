@@ -128,13 +128,14 @@ jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *o
     p.alive = p.c.count;
     if (p.alive < 2) goto done; // there is nothing to join
     p.run_count = p.c.run_count;
-    p.run_capacity = (size_t)p.c.run_count;
+    size_t capacity = (size_t)p.c.run_count + (size_t)p.c.run_count / 8 + 1024; // bridges' runs follow
     TRY(ALLOCATE(ctx, p.parent, p.c.count));
     TRY(ALLOCATE_CLEARED(ctx, p.area, p.c.count));
     TRY(ALLOCATE(ctx, p.box, p.c.count));
     TRY(ALLOCATE(ctx, p.head, p.c.count));
     TRY(ALLOCATE(ctx, p.tail, p.c.count));
-    TRY(ALLOCATE(ctx, p.run, p.c.run_count));
+    TRY(ALLOCATE(ctx, p.run, capacity));
+    p.run_capacity = capacity;
     TRY(ALLOCATE(ctx, p.row_bridge, drawing->height_px));
     fill_parts(&p);
     for (int32_t i = 0; i < p.c.count; i++) TRY(queue_part(ctx, &p, i));

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 enum { FIRST_RIM_PX = 14, RIM_TIMES = 4, MOST_NEAR_RIM_PX = 224 };
-enum { MOST_NEAR_WORDS = 1 << 15 };
+enum { MOST_NEAR_WORDS = 1 << 13 };
 
 // Cut off MOST_JUMP_PX beyond the picture: a jump can overshoot the part by that much and come back.
 static window window_around(const jali_bitmap *solid, const int32_t box[4], int32_t rim)
@@ -93,14 +93,26 @@ static void swap_grown(search *s)
     s->next = swap, s->next_capacity = capacity;
 }
 
+// Room in a plane, whose pixels are then lost where it had less.
+static jali_status room_in(jali_context *ctx, uint64_t **plane, size_t *capacity, int64_t words)
+{
+    if ((size_t)words <= *capacity) return JALI_OK;
+    release(ctx, *plane);
+    *plane = NULL;
+    *capacity = 0;
+    size_t wanted = (size_t)words + (size_t)words / 2;
+    jali_status status = ALLOCATE(ctx, *plane, wanted);
+    if (status == JALI_OK) *capacity = wanted;
+    return status;
+}
+
 // The rim is too narrow: what has grown so far goes into a wider window. Both are cut off alike at the
 // picture, so it is what would have grown there.
 static jali_status widen(jali_context *ctx, const window *narrow, const window *wide, search *s)
 {
-    size_t count = (size_t)word_count(wide);
-    jali_status status = GROW(ctx, s->next, s->next_capacity, count);
+    jali_status status = room_in(ctx, &s->next, &s->next_capacity, word_count(wide));
     if (status != JALI_OK) return status;
-    memset(s->next, 0, count * sizeof *s->next);
+    memset(s->next, 0, (size_t)word_count(wide) * sizeof *s->next);
     int64_t left = (narrow->x0 - wide->x0) / 64;
     for (int32_t y = 0; y < narrow->rows; y++)
         memcpy(row_of(wide, s->next, y + narrow->y0 - wide->y0) + left, row_of(narrow, s->grown, y),
@@ -113,10 +125,10 @@ static jali_status reserve(jali_context *ctx, search *s, const window *w)
 {
     jali_status status;
     int64_t count = word_count(w);
-    TRY(GROW(ctx, s->picture, s->picture_capacity, count));
-    TRY(GROW(ctx, s->grown, s->grown_capacity, count));
-    TRY(GROW(ctx, s->next, s->next_capacity, count));
-    TRY(GROW(ctx, s->spare, s->spare_capacity, count));
+    TRY(room_in(ctx, &s->picture, &s->picture_capacity, count));
+    TRY(room_in(ctx, &s->grown, &s->grown_capacity, count));
+    TRY(room_in(ctx, &s->next, &s->next_capacity, count));
+    TRY(room_in(ctx, &s->spare, &s->spare_capacity, count));
 done:
     return status;
 }
@@ -164,7 +176,7 @@ static jali_status search_within(jali_context *ctx, const jali_bitmap *solid, co
     *found = false;
     s->steps = 0;
     TRY(make_room(ctx, s, &w));
-    TRY(GROW(ctx, s->own, s->own_capacity, word_count(&first)));
+    TRY(room_in(ctx, &s->own, &s->own_capacity, word_count(&first)));
     draw_part(p, root, &first, s->own);
     memcpy(s->grown, s->own, (size_t)word_count(&first) * sizeof *s->grown);
     for (int32_t rim = FIRST_RIM_PX; !stopping(ctx);) {
@@ -207,7 +219,7 @@ jali_status make_room_near(jali_context *ctx, const jali_bitmap *solid, const pa
         s->near_rim = rim;
     }
     if (s->near_rim == 0) return JALI_OK;
-    TRY(GROW(ctx, s->own, s->own_capacity, word_count(&first)));
+    TRY(room_in(ctx, &s->own, &s->own_capacity, word_count(&first)));
     TRY(reserve(ctx, s, &near));
 done:
     return status;
