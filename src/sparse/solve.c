@@ -14,12 +14,18 @@ enum { SIDE_BY_SIDE = 32 }; // right sides that are solved at one time
 static const double ONE = 1, MINUS = -1, NONE = 0;
 static const int UNIT = 1;
 
-// What the rows below a front's pivots lose to `lost`, or what they are.
-static void spread(const elimination *e, int32_t f, int count, const double *lost, double *x)
+// What the rows below a front's pivots lose to `lost`: those up to `end` in x, those above it where the
+// subtree keeps account of them, `rows` ascending positions.
+static void spread(const elimination *e, int32_t f, int count, const double *lost, double *x, int32_t end,
+                   const int32_t *rows, double *account)
 {
     for (int64_t k = e->row[f]; k < e->row[f + 1]; k++) {
         int32_t p = e->below[k], width = (e->start[p + 1] - e->start[p]) * count;
         double *to = x + (size_t)e->start[p] * (size_t)count;
+        if (p >= end) {
+            for (; *rows < p; rows++) account += (e->start[*rows + 1] - e->start[*rows]) * count;
+            to = account;
+        }
         for (int32_t i = 0; i < width; i++) to[i] -= *lost++;
     }
 }
@@ -79,44 +85,131 @@ static void carry(const solver *s, int32_t count, bool in, double *by_column, do
     }
 }
 
-static void solve_together(const solver *s, int32_t count, double *x, double *below)
+// Subtrees are solved side by side, what they take from rows above them kept apart; the fronts above come one
+// after the other. The order of all sums is that of the structure, for any number of threads.
+typedef struct solving {
+    const solver *s;
+    int count;
+    double *x;
+    double *desk;   // of the subtrees: account, then below
+    int64_t *begin; // [subtree_count] where a subtree's begins
+    int64_t *below; // [subtree_count] and the second part of it
+    double *above;  // [tallest * count] below, for the fronts above
+} solving;
+
+static void forward_front(const solving *v, int32_t f, double *below, int32_t root, double *account)
 {
-    const elimination *e = &s->order;
-    for (int32_t f = 0; f < e->front_count; f++) {
-        front d = front_of(s, f);
-        if (d.pivots == 0) continue;
-        forward(&d, count, x + (size_t)e->start[e->first[f]] * (size_t)count, below);
-        spread(e, f, count, below, x);
-    }
-    for (int32_t f = e->front_count; f-- > 0;) {
-        front d = front_of(s, f);
-        if (d.pivots == 0) continue;
-        collect(e, f, count, x, below);
-        backward(&d, count, below, x + (size_t)e->start[e->first[f]] * (size_t)count);
+    const elimination *e = &v->s->order;
+    front d = front_of(v->s, f);
+    if (d.pivots == 0) return;
+    forward(&d, v->count, v->x + (size_t)e->start[e->first[f]] * (size_t)v->count, below);
+    spread(e, f, v->count, below, v->x, root < 0 ? INT32_MAX : e->first[root + 1],
+           root < 0 ? NULL : e->below + e->row[root], account);
+}
+
+static void backward_front(const solving *v, int32_t f, double *below)
+{
+    const elimination *e = &v->s->order;
+    front d = front_of(v->s, f);
+    if (d.pivots == 0) return;
+    collect(e, f, v->count, v->x, below);
+    backward(&d, v->count, below, v->x + (size_t)e->start[e->first[f]] * (size_t)v->count);
+}
+
+static void forward_subtree(void *shared, int32_t index)
+{
+    const solving *v = shared;
+    int32_t root = v->s->subtree[index];
+    double *account = v->desk + v->begin[index];
+    memset(account, 0, (size_t)v->s->order.height[root] * (size_t)v->count * sizeof *account);
+    for (int32_t f = v->s->begin[root]; f <= root; f++)
+        forward_front(v, f, v->desk + v->below[index], root, account);
+}
+
+static void backward_subtree(void *shared, int32_t index)
+{
+    const solving *v = shared;
+    int32_t root = v->s->subtree[index];
+    for (int32_t f = root; f >= v->s->begin[root]; f--) backward_front(v, f, v->desk + v->below[index]);
+}
+
+// What subtrees took from the rows above them.
+static void settle_accounts(const solving *v)
+{
+    const elimination *e = &v->s->order;
+    for (int32_t i = 0; i < v->s->subtree_count; i++) {
+        int32_t root = v->s->subtree[i];
+        const double *account = v->desk + v->begin[i];
+        for (int64_t k = e->row[root]; k < e->row[root + 1]; k++) {
+            int32_t p = e->below[k], width = (e->start[p + 1] - e->start[p]) * v->count;
+            double *to = v->x + (size_t)e->start[p] * (size_t)v->count;
+            for (int32_t w = 0; w < width; w++) to[w] += *account++;
+        }
     }
 }
 
-static int32_t tallest(const elimination *e)
+static void solve_together(jali_context *ctx, solving *v)
+{
+    const solver *s = v->s;
+    int32_t next = 0;
+    parallel(ctx, s->subtree_count, forward_subtree, v);
+    settle_accounts(v);
+    for (int32_t f = 0; f < s->order.front_count; f++)
+        if (next < s->subtree_count && f == s->begin[s->subtree[next]])
+            f = s->subtree[next++];
+        else
+            forward_front(v, f, v->above, -1, NULL);
+    next = s->subtree_count;
+    for (int32_t f = s->order.front_count; f-- > 0;)
+        if (next > 0 && f == s->subtree[next - 1])
+            f = s->begin[s->subtree[--next]];
+        else
+            backward_front(v, f, v->above);
+    parallel(ctx, s->subtree_count, backward_subtree, v);
+}
+
+static int32_t tallest(const elimination *e, int32_t from, int32_t to)
 {
     int32_t most = 0;
-    for (int32_t f = 0; f < e->front_count; f++) most = MAX(most, e->height[f]);
+    for (int32_t f = from; f < to; f++) most = MAX(most, e->height[f]);
     return most;
+}
+
+// Room for `count` right sides at a time.
+static jali_status lay_desks(jali_context *ctx, const solver *s, int32_t count, solving *v)
+{
+    jali_status status;
+    const elimination *e = &s->order;
+    int64_t all = 0;
+    *v = (solving){.s = s};
+    TRY(ARENA(ctx, v->begin, s->subtree_count + 1));
+    TRY(ARENA(ctx, v->below, s->subtree_count + 1));
+    for (int32_t i = 0; i < s->subtree_count; i++) {
+        int32_t root = s->subtree[i];
+        v->begin[i] = all;
+        v->below[i] = all + (int64_t)count * e->height[root];
+        all = v->below[i] + (int64_t)count * tallest(e, s->begin[root], root + 1);
+    }
+    TRY(ARENA(ctx, v->desk, (size_t)all + 1));
+    TRY(ARENA(ctx, v->above, (size_t)tallest(e, 0, e->front_count) * (size_t)count));
+    TRY(ARENA(ctx, v->x, (size_t)unknowns_of(s->a) * (size_t)count));
+done:
+    return status;
 }
 
 jali_status solver_solve(jali_context *ctx, solver *s, int32_t count, double *x)
 {
     jali_status status = JALI_OK;
     arena_mark mark = arena_here(ctx);
-    size_t size = (size_t)unknowns_of(s->a), together = (size_t)MIN(count, SIDE_BY_SIDE);
-    double *ordered, *below;
-    TRY(ARENA(ctx, ordered, size * together));
-    TRY(ARENA(ctx, below, (size_t)tallest(&s->order) * together));
+    size_t size = (size_t)unknowns_of(s->a);
+    solving v;
+    TRY(lay_desks(ctx, s, MIN(count, SIDE_BY_SIDE), &v));
     for (int32_t i = 0; i < count; i += SIDE_BY_SIDE) {
-        int32_t some = MIN(SIDE_BY_SIDE, count - i);
+        v.count = MIN(SIDE_BY_SIDE, count - i);
         TRY(step(ctx, "solve", (double)i / count));
-        carry(s, some, true, x + (size_t)i * size, ordered);
-        solve_together(s, some, ordered, below);
-        carry(s, some, false, x + (size_t)i * size, ordered);
+        carry(s, v.count, true, x + (size_t)i * size, v.x);
+        solve_together(ctx, &v);
+        carry(s, v.count, false, x + (size_t)i * size, v.x);
     }
     TRY(step(ctx, "solve", 1));
 done:
@@ -256,7 +349,7 @@ jali_status solver_inverse(jali_context *ctx, solver *s, int32_t row_count, cons
     TRY(ARENA(ctx, w.f, (size_t)w.count * (size_t)w.count));
     TRY(ARENA(ctx, w.left, e->front_count));
     TRY(ARENA(ctx, w.part, e->front_count));
-    TRY(ARENA(ctx, w.run, tallest(e)));
+    TRY(ARENA(ctx, w.run, tallest(e, 0, e->front_count)));
     memset(w.f, 0, (size_t)w.count * (size_t)w.count * sizeof *w.f);
     memset(w.left, 0, (size_t)e->front_count * sizeof *w.left);
     TRY(climb_all(ctx, &w));
