@@ -17,12 +17,20 @@ void attachments_begin(attachments *a, structure *s, int32_t case_count)
     *a = (attachments){.s = s, .case_count = case_count};
 }
 
+static void uncouple(jali_context *ctx, attachments *a)
+{
+    release(ctx, a->coupled.matrix);
+    release(ctx, a->coupled.pivot);
+    a->coupled = (coupling){0};
+}
+
 void attachments_free(jali_context *ctx, attachments *a)
 {
     for (size_t i = 0; i < a->kept; i++) condensed_free(ctx, &a->bridge[i]);
     release(ctx, a->bridge);
     release(ctx, a->row);
     release(ctx, a->f);
+    uncouple(ctx, a);
     *a = (attachments){0};
 }
 
@@ -39,6 +47,7 @@ jali_status attach(jali_context *ctx, attachments *a, const bridge *b, int32_t *
     TRY(GROW(ctx, a->bridge, a->capacity, a->kept + 1));
     TRY(condense(ctx, a->s, b, a->case_count, &a->bridge[a->kept]));
     *name = a->bridge[a->kept].name = a->next_name++;
+    a->stands = false;
     swap_bridges(a, a->count++, a->kept++);
 done:
     return status;
@@ -55,12 +64,14 @@ void withdraw(attachments *a, int32_t name)
 {
     size_t i = named(a, name, 0, a->count);
     if (i < a->count) swap_bridges(a, i, --a->count);
+    a->stands = false;
 }
 
 void attach_again(attachments *a, int32_t name)
 {
     size_t i = named(a, name, a->count, a->kept);
     if (i < a->kept) swap_bridges(a, i, a->count++);
+    a->stands = false;
 }
 
 int32_t index_of(int32_t count, const int32_t *row, int32_t wanted)
@@ -158,33 +169,51 @@ done:
     return status;
 }
 
-jali_status couple(jali_context *ctx, attachments *a, coupling *m)
+// M = I + F S: a bridge's columns of F, times its S, added to its columns of M.
+static jali_status fill_coupling(jali_context *ctx, const attachments *a, double *matrix)
 {
     jali_status status;
+    arena_mark mark = arena_here(ctx);
+    size_t n = (size_t)a->rank, most = 0;
+    double *felt, *pulled;
+    for (size_t i = 0; i < a->count; i++) most = MAX(most, (size_t)a->bridge[i].rank);
+    TRY(ARENA(ctx, felt, n * most));
+    TRY(ARENA(ctx, pulled, n * most));
+    memset(matrix, 0, n * n * sizeof *matrix);
+    for (size_t r = 0; r < n; r++) matrix[r * n + r] = 1;
+    for (size_t i = 0; i < a->count; i++) {
+        const condensed *c = &a->bridge[i];
+        size_t rank = (size_t)c->rank;
+        for (size_t r = 0; r < n; r++)
+            for (size_t k = 0; k < rank; k++) felt[r * rank + k] = a->f[r * n + (size_t)c->at[k]];
+        memset(pulled, 0, n * rank * sizeof *pulled);
+        add_product(a->rank, c->rank, c->rank, felt, rank, c->stiffness, rank, pulled, rank);
+        for (size_t r = 0; r < n; r++)
+            for (size_t k = 0; k < rank; k++) matrix[r * n + (size_t)c->at[k]] += pulled[r * rank + k];
+    }
+done:
+    arena_rewind(ctx, mark);
+    return status;
+}
+
+jali_status couple(jali_context *ctx, attachments *a, coupling *m)
+{
+    jali_status status = JALI_OK;
+    if (a->stands) goto done;
+    uncouple(ctx, a);
     TRY(extend(ctx, a));
-    size_t n = (size_t)a->rank;
     for (size_t i = 0; i < a->count; i++)
         for (int32_t k = 0; k < a->bridge[i].rank; k++)
             a->bridge[i].at[k] = index_of(a->rank, a->row, a->bridge[i].row[k]);
-    TRY(ARENA(ctx, m->matrix, n * n));
-    TRY(ARENA(ctx, m->pivot, n));
-    memset(m->matrix, 0, n * n * sizeof *m->matrix);
-    for (size_t r = 0; r < n; r++) {
-        double *row = m->matrix + r * n;
-        row[r] = 1;
-        for (size_t i = 0; i < a->count; i++) {
-            const condensed *c = &a->bridge[i];
-            for (int32_t k = 0; k < c->rank; k++) {
-                const double *s = c->stiffness + (size_t)k * (size_t)c->rank,
-                             f = a->f[r * n + (size_t)c->at[k]];
-                for (int32_t q = 0; q < c->rank; q++) row[c->at[q]] += f * s[q];
-            }
-        }
-    }
-    if (!lu(a->rank, m->matrix, m->pivot))
-        status = fail(ctx, JALI_NO_RESULT,
-                      "bridges at %d unknowns cannot be joined: their system is singular", a->rank);
+    TRY(ALLOCATE(ctx, a->coupled.matrix, (size_t)a->rank * (size_t)a->rank));
+    TRY(ALLOCATE(ctx, a->coupled.pivot, a->rank));
+    TRY(fill_coupling(ctx, a, a->coupled.matrix));
+    if (!lu(a->rank, a->coupled.matrix, a->coupled.pivot))
+        TRY(fail(ctx, JALI_NO_RESULT, "bridges at %d unknowns cannot be joined: their system is singular",
+                 a->rank));
+    a->stands = true;
 done:
+    *m = a->coupled;
     return status;
 }
 

@@ -9,6 +9,12 @@
 
 #include "structure/condense.h"
 
+/// The system that couples the bridges: M = I + F S, factored.
+typedef struct coupling {
+    double *matrix; // [rank][rank]
+    int32_t *pivot; // [rank]
+} coupling;
+
 /// {0} is not valid: begin with attachments_begin. The structure must live as long, and keep its factor.
 typedef struct attachments {
     structure *s;
@@ -19,6 +25,8 @@ typedef struct attachments {
     int32_t rank;      // unknowns at the ends of all bridges, also of those withdrawn since
     int32_t *row;      // [rank] ascending
     double *f;         // [rank][rank] K^-1 there
+    coupling coupled;  // of those attached,
+    bool stands;       // unless one came or went since
     double residual;   // of the last solution, as structure's
     bool rough;        // set by the owner: a search, for which solutions without refinement (1e-8) do
 } attachments;
@@ -72,13 +80,8 @@ jali_status bridges_worth(jali_context *ctx, attachments *a, int32_t count, cons
 
 // What attach.c and worth.c share.
 
-/// The system that couples the bridges: M = I + F S, factored; in the arena.
-typedef struct coupling {
-    double *matrix; // [rank][rank]
-    int32_t *pivot; // [rank]
-} coupling;
-
-/// Bring F up to the bridges that are there, and couple them.
+/// Bring F up to the bridges that are there, and couple them, unless they are.
+///   out    m   the attachments' own, as long as none comes or goes
 jali_status couple(jali_context *ctx, attachments *a, coupling *m);
 
 /// Sort, and keep each once; returns how many stay.
