@@ -437,10 +437,13 @@ done:
     return status;
 }
 
-// A factor costs more the larger the sheet is, a correction by the rank of what is attached.
-static int32_t rank_worth_a_factor(const jali_sheet *sheet)
+// A factor costs more the larger the sheet is, and with it go drawing, triangles, ways and trials; a
+// correction by the rank of what is attached, of which a flat sheet's connectors have half as much.
+static int32_t rank_worth_a_factor(const search *s)
 {
-    return MAX(RANK_WORTH_A_FACTOR, sheet->node_count / 200);
+    int32_t nodes = s->sheet->node_count, most = RANK_WORTH_A_FACTOR;
+    if (s->structure->bending_only) most = MAX(most, MIN(2 * RANK_WORTH_A_FACTOR, nodes / 60));
+    return MAX(most, nodes / 200);
 }
 
 jali_status jali_reinforce(jali_context *ctx, const jali_sheet *sheet, const jali_bitmap *mask,
@@ -457,7 +460,7 @@ jali_status jali_reinforce(jali_context *ctx, const jali_sheet *sheet, const jal
     *r = (jali_reinforcement){0};
     TRY(prepare(ctx, &s));
     while (r->round_count < s.opt.most_rounds && s.now.stress.value > s.opt.limit_mpa &&
-           s.attached.rank < rank_worth_a_factor(sheet)) {
+           s.attached.rank < rank_worth_a_factor(&s)) {
         int32_t before = s.count;
         TRY(step(ctx, "reinforce", (double)r->round_count / s.opt.most_rounds));
         TRY(s.opt.rule == JALI_REINFORCE_PAPER ? lay_by_the_paper(ctx, &s) : lay_best(ctx, &s));
