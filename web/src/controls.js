@@ -6,7 +6,7 @@ import { MODELS, PICTURES, PROFILES, sampleUrl } from "./files.js";
 import { thresholdField } from "./levels.js";
 import { placingOf } from "./placing.js";
 import { vectorField } from "./placing-fields.js";
-import { change, profileOf, state } from "./state.js";
+import { MOST_COPIES, canGoAround, change, copiesAround, goesAround, profileOf, state } from "./state.js";
 import { text } from "./strings.js";
 
 function thumbnail(name) {
@@ -68,9 +68,9 @@ function printerWords(s, lists) {
 }
 
 function printerGroup(lists, take) {
-    const figures = (s) => s.printer === "";
+    const figures = (s) => s.printer === "", freely = (s) => !goesAround(s);
     return group("size",
-        slider("width", "width", { min: 10, max: 400, step: 1, unit: "mm" }),
+        slider("width", "width", { min: 10, max: 400, step: 1, unit: "mm", show: freely }),
         slider("frame", "frame", { min: 0, max: 20, step: 0.5, unit: "mm" }),
         slider("thickness", "thickness", { min: 0.4, max: 20, step: 0.2, unit: "mm" }),
         menu("printer", "printer", printerChoices(lists)), note((s) => printerWords(s, lists)),
@@ -78,32 +78,39 @@ function printerGroup(lists, take) {
         slider("phi-e", "phi_e", { min: -0.5, max: 1, step: 0.01, unit: "mm", show: figures }),
         slider("phi-s", "phi_s", { min: 0.05, max: 3, step: 0.05, unit: "mm", show: figures }),
         slider("phi-v", "phi_v", { min: 0.05, max: 3, step: 0.05, unit: "mm", show: figures }),
-        check("nudge", "nudge"));
+        check("nudge", "nudge", { show: freely }));
 }
 
-function surfaceGroup(take) {
-    const mesh = (s) => s.surface === "mesh", model = (s) => mesh(s) && s.mesh !== "", round_ = (s) => s.surface !== "plate" && !mesh(s), curved = (s) => round_(s) || model(s);
+function surfaceGroup(take, aspect) {
+    const mesh = (s) => s.surface === "mesh", model = (s) => mesh(s) && s.mesh !== "", round_ = (s) => s.surface !== "plate" && !mesh(s);
+    const placed = (s) => (round_(s) || model(s)) && !goesAround(s);
     return group("surface",
         menu("surface", "surface", ["plate", "cylinder", "vase", "cone", "sphere", "mesh"].map((name) => [name, text(name)])),
         note((s) => (s.mesh ? s.meshName : text("noMesh")), mesh),
         make("div", { class: "tool-row" }, picker("chooseMesh", MODELS, take)),
         slider("radius", "radius", { min: 10, max: 150, step: 1, unit: "mm", show: round_ }),
         slider("height", "height", { min: 20, max: 400, step: 5, unit: "mm", show: (s) => round_(s) && s.surface !== "sphere" }),
+        check("around", "around", { show: canGoAround, more: (yes) => (yes ? { repeat: copiesAround(state(), aspect()) } : {}) }),
+        slider("repeat", "copies", { min: 1, max: MOST_COPIES, step: 1, show: goesAround }), note(() => text("aroundHint"), goesAround),
         slider("meshHeight", "meshHeight", { min: 0, max: 400, step: 1, unit: "mm", show: model }),
         slider("meshTurn", "meshTurn", { min: -180, max: 180, step: 1, unit: "degree", show: model }),
         menu("meshUp", "meshUp", ["z", "y", "x", "-z", "-y", "-x"].map((axis) => [axis, axis]), { show: model }),
-        menu("place", "place", ["auto", "project", "wrap"].map((way) => [way, text(`place_${way}`)]), { show: curved }),
-        vectorField("at", "at", { step: 1, show: curved, hint: "atHint" }),
-        vectorField("dir", "dir", { step: 0.1, show: (s) => curved(s) && placingOf(s) === "project" }));
+        menu("place", "place", ["auto", "project", "wrap"].map((way) => [way, text(`place_${way}`)]), { show: placed }),
+        vectorField("at", "at", { step: 1, show: placed, hint: "atHint" }),
+        vectorField("dir", "dir", { step: 0.1, show: (s) => placed(s) && placingOf(s) === "project" }));
 }
 
-const strengthGroup = (lists) => group("strength",
-    slider("force", "force", { min: 0, max: 500, step: 5, unit: "newton" }),
-    menu("material", "material", lists.materials.map((m) => [m.name, m.name])));
+function strengthGroup(lists) {
+    const freely = (s) => !goesAround(s);
+    return group("strength",
+        note(() => text("noLoadAround"), goesAround),
+        slider("force", "force", { min: 0, max: 500, step: 5, unit: "newton", show: freely }),
+        menu("material", "material", lists.materials.map((m) => [m.name, m.name]), { show: freely }));
+}
 
-/** Fill the form anew, in the language that is set. */
-export function showControls(form, lists, { take, openCrop }) {
+/** Fill the form anew, in the language that is set; aspect() is the picture's height over its width. */
+export function showControls(form, lists, { take, openCrop, aspect }) {
     forget();
-    form.replaceChildren(pictureGroup(lists, take, openCrop), printerGroup(lists, take), surfaceGroup(take), strengthGroup(lists));
+    form.replaceChildren(pictureGroup(lists, take, openCrop), printerGroup(lists, take), surfaceGroup(take, aspect), strengthGroup(lists));
     updateFields();
 }

@@ -35,8 +35,9 @@ export function slider(key, words, { unit, show, enabled, toState = Number, from
     return row;
 }
 
-export function check(key, words, show) {
-    const box = make("input", { type: "checkbox", onchange: () => change({ [key]: box.checked }) });
+/** Yes or no; more(checked) gives the values that change with it. */
+export function check(key, words, { show, more = () => ({}) } = {}) {
+    const box = make("input", { type: "checkbox", onchange: () => change({ [key]: box.checked, ...more(box.checked) }) });
     const row = make("label", { class: "check" }, box, text(words));
     hidable(row, show);
     onUpdate((s) => { box.checked = s[key]; });

@@ -20,7 +20,7 @@ import { showResults } from "./results.js";
 import { Plan, bitmapOf, bytesOf, run } from "./runs.js";
 import { Smallest } from "./smallest.js";
 import { SolidView } from "./solid-view.js";
-import { canRedo, canUndo, change, commandLine, job, onChange, readAddress, redo, state, undo } from "./state.js";
+import { canRedo, canUndo, change, commandLine, goesAround, job, onChange, readAddress, redo, state, undo } from "./state.js";
 import { fillWords, language, setLanguage, text } from "./strings.js";
 
 const WHOLE_FILES = ["figures.json", "input.png", "mask.png", "bridges.json", "bridges.png", "lost.png", "conflicts.png", "print.png", "errors.png", "mesh.bin"], STRENGTH_FILES = ["stress.bin", "displacement.bin"];
@@ -40,6 +40,7 @@ const smallest = new Smallest(fail);
 let lists;
 let figures = null;
 let counted = ""; // what the grey levels shown are of
+let aspect = 1; // the picture's height over its width, by the last run in which it was there once
 let last = null; // the whole run that is shown: {id, request, files}
 
 const say = (key, values) => { $("status").textContent = text(key, values); };
@@ -81,11 +82,12 @@ async function whole(signal) {
     await previewed;
     signal.throwIfAborted();
     const { surface, thickness, force } = state(), flat = surface === "plate";
-    const files = force > 0 ? [...WHOLE_FILES, ...STRENGTH_FILES] : WHOLE_FILES;
+    const files = force > 0 && !goesAround(state()) ? [...WHOLE_FILES, ...STRENGTH_FILES] : WHOLE_FILES;
     const picture = await pictureOf(state());
     const request = { ...job(picture), verb: "carve" };
     const id = await run({ ...request, files }, "whole", signal, (name, fraction) => progress.tell(name, fraction));
     figures = await (await api.file(id, "figures.json", signal)).json();
+    if (!goesAround(state())) aspect = figures.size_mm[1] / figures.size_mm[0];
     showPlace(figures.place);
     showThreshold(figures.input.threshold);
     updateFields();
@@ -183,6 +185,12 @@ async function save() {
 
 // --- The frame of it all
 
+// What goes all around takes no edits by hand.
+function showEdit() {
+    edit.toggle.hidden = pictureView.root.hidden || goesAround(state());
+    if (goesAround(state()) && edit.isOpen) edit.open(false);
+}
+
 function selectView(name) {
     if (crop.isOpen) crop.close();
     for (const kind of ["picture", "solid"]) {
@@ -191,7 +199,8 @@ function selectView(name) {
         tab.tabIndex = kind === name ? 0 : -1;
     }
     pictureView.root.hidden = name !== "picture";
-    $("legend").hidden = pictureView.chooser.hidden = edit.toggle.hidden = name !== "picture";
+    $("legend").hidden = pictureView.chooser.hidden = name !== "picture";
+    showEdit();
     solidView.root.hidden = name !== "solid";
     if (name === "solid") solidView.resize();
     else pictureView.draw();
@@ -203,7 +212,7 @@ function showWords() {
     edit.words();
     solidView.words();
     placing.words();
-    showControls($("controls"), lists, { take: (file) => takeFile(file).catch(fail), openCrop: () => openCrop().catch(fail) });
+    showControls($("controls"), lists, { take: (file) => takeFile(file).catch(fail), openCrop: () => openCrop().catch(fail), aspect: () => aspect });
     progress.words();
     showFigures();
 }
@@ -244,6 +253,7 @@ function listen() {
         updateFields();
         placing.refresh();
         smallest.refresh().catch(fail);
+        showEdit();
         edit.draw();
         $("undo").disabled = !canUndo();
         $("redo").disabled = !canRedo();

@@ -7,7 +7,7 @@ import { BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, Group, Mesh
 import { make } from "./dom.js";
 import { Skin } from "./skin.js";
 import { geometryOf } from "./solid-view.js";
-import { change, state } from "./state.js";
+import { change, goesAround, state } from "./state.js";
 import { text } from "./strings.js";
 
 const COLUMNS = 33, ROWS = 33, KEY_MM = 1, SHIFT_MM = 10;
@@ -49,9 +49,9 @@ export class Placing {
     /** What was chosen has changed, or a run is shown. */
     refresh() {
         if (!this.button) return;
-        const flat = state().surface === "plate";
-        this.button.hidden = flat;
-        if (flat && this.on) this.flip(false);
+        const fixed = state().surface === "plate" || goesAround(state());
+        this.button.hidden = fixed;
+        if (fixed && this.on) this.flip(false);
         if (this.on) this.begin();
     }
 

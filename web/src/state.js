@@ -3,6 +3,7 @@
 import { editsOf, jsonOf } from "./edits.js";
 
 const MOST_ADDRESS_CHARACTERS = 1500; // of edits: longer ones stay in the state and in project files
+export const MOST_COPIES = 60;
 
 export const DEFAULTS = Object.freeze({
     sample: "girih", // "" when the picture is the user's own, and then
@@ -16,6 +17,7 @@ export const DEFAULTS = Object.freeze({
     profile: "", profileName: "", // a profile of one's own, as JSON, and its file's name
     surface: "plate", radius: 40, height: 120, // "mesh":
     mesh: "", meshName: "", meshHeight: 0, meshUp: "z", meshTurn: 0, // an upload, its file's name; height in mm (0: as it is)
+    around: false, repeat: 1, // all around a round shape, so many copies
     place: "auto", at: "", dir: "", // auto, project or wrap; "x,y,z" in mm and as a direction, "" = found
     force: 0, material: "pla",
 });
@@ -96,6 +98,19 @@ const SHAPES = {
     sphere: (s) => `sphere:r=${s.radius}`,
 };
 
+const CLOSED = ["cylinder", "vase", "sphere"]; // once around they meet themselves
+
+export const canGoAround = (s) => CLOSED.includes(s.surface);
+
+/** Whether the picture goes all around: it then has the size that this gives it, and no place, load or edits by hand. */
+export const goesAround = (s) => s.around && canGoAround(s);
+
+/** How many copies go around so that they are no higher than the shape; aspect: a picture's height over its width. */
+export function copiesAround(s, aspect) {
+    const high = s.surface === "sphere" ? 2.2 * s.radius : s.height;
+    return Math.max(1, Math.min(MOST_COPIES, Math.ceil((2 * Math.PI * s.radius * aspect) / Math.max(high - 2 * s.frame, 1))));
+}
+
 // A model that was uploaded is called so in a job (docs/serve.md), and by its own name on the command line.
 function meshSurface(s, name) {
     const words = [["height", s.meshHeight || ""], ["up", s.meshUp === "z" ? "" : s.meshUp], ["turn", s.meshTurn || ""],
@@ -122,11 +137,14 @@ export function options(s = now, meshName = "model.mesh", profileName = "") {
     if (s.nudge) out.nudge = 3;
     if (s.surface === "mesh" && s.mesh) out.surface = meshSurface(s, meshName);
     else if (SHAPES[s.surface] && s.surface !== "plate") out.surface = SHAPES[s.surface](s);
-    if (out.surface) {
+    if (goesAround(s)) {
+        for (const key of ["width", "nudge"]) delete out[key];
+        Object.assign(out, { around: "true" }, s.repeat > 1 ? { repeat: s.repeat } : {});
+    } else if (out.surface) {
         if (s.place !== "auto") out.place = s.place;
         for (const key of ["at", "dir"]) if (s[key]) out[key] = s[key];
     }
-    if (s.force > 0) Object.assign(out, { force: s.force, material: s.material });
+    if (s.force > 0 && !goesAround(s)) Object.assign(out, { force: s.force, material: s.material });
     return Object.fromEntries(Object.entries(out).map(([key, value]) => [key, String(value)]));
 }
 
@@ -142,7 +160,7 @@ export function profileOf(s = now) {
 
 /** A job's keys that say what to make of a picture: docs/serve.md, without verb and files. */
 export function job(picture, s = now) {
-    const edits = jsonOf(editsOf(s.edits));
+    const edits = goesAround(s) ? null : jsonOf(editsOf(s.edits));
     return { picture: picture.id, name: picture.name, options: options(s), ...(edits ? { edits } : {}),
         ...(s.surface === "mesh" && s.mesh ? { mesh: s.mesh } : {}), ...(s.printer === "file" && profileOf(s) ? { printer: profileOf(s) } : {}) };
 }
@@ -154,6 +172,6 @@ export function commandLine(picture) {
     const words = ["jali", "carve", quoted(picture)];
     for (const [key, value] of Object.entries(options(now, now.meshName, now.profileName)))
         words.push(value === "true" ? `--${key}` : `--${key} ${quoted(value)}`);
-    if (now.edits) words.push("--edits edits.json");
+    if (now.edits && !goesAround(now)) words.push("--edits edits.json");
     return [...words, "-o", quoted(picture.replace(/\.\w+$/, "") + ".3mf")].join(" ");
 }

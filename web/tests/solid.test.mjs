@@ -1,7 +1,9 @@
 // The object in space: its views, its dimensions, what it bears in colour, its weakest place.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { barriers, check, download, open, shot, t } from "./testing.mjs";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { address, barriers, check, done, download, folder, line, number, open, shot, t } from "./testing.mjs";
 
 const see = async (more) => { await open(more); await t.page.click("#tab-solid"); };
 const pressed = (name) => t.page.getAttribute(`.solid-bar [data-${name}]`, "aria-pressed");
@@ -101,4 +103,25 @@ test("with reduced motion a view is there at once", async () => {
     const once = await drawn();
     await t.page.waitForTimeout(400);
     assert.deepEqual(await drawn(), once);
+});
+
+test("all around a cylinder: as many copies as its height takes, and what the command line makes", async () => {
+    await open("&sample=girih&surface=cylinder&radius=20&height=60&width=40");
+    await t.page.getByLabel("All around, without a seam").check();
+    await done();
+    assert.equal(await number("Copies side by side").inputValue(), "3");
+    assert.match(await address(), /around=true/);
+    assert.ok(await number("Width").isHidden() && await t.page.locator("#edit").isHidden() && await number("Force pressed on it").isHidden());
+    const { bytes } = await download("object.stl");
+    line("sample", "girih", "--size", "1000", "-o", join(folder, "girih.png"));
+    line("carve", join(folder, "girih.png"), "--surface", "cylinder:r=20,h=60", "--around", "--repeat", "3", "--frame", "2", "--thickness", "4",
+        "--printer", "hori-z500", "-o", join(folder, "around.stl"));
+    assert.ok(bytes.equals(readFileSync(join(folder, "around.stl"))));
+    assert.ok(check(join(folder, "around.stl")).solid);
+    await t.page.click("#tab-solid");
+    await shot("around");
+    await t.page.getByLabel("All around, without a seam").uncheck();
+    await done();
+    assert.ok(await number("Width").isVisible() && await t.page.locator("#edit").count() === 1);
+    assert.deepEqual(await barriers(), []);
 });
