@@ -78,8 +78,8 @@ static bool wait_for(pid_t child, double seconds, double *took)
     return fine;
 }
 
-static bool run(const char *const *options, const char *more, const char *from, const char *to,
-                double seconds, double *took)
+static bool run(const char *const *options, const char *more, const char *const from[], int parts,
+                const char *to, double seconds, double *took)
 {
     const char *word[MOST_WORDS] = {"prusa-slicer"};
     int count = 1;
@@ -89,7 +89,11 @@ static bool run(const char *const *options, const char *more, const char *from, 
     if (more) word[count++] = more;
     word[count++] = "-o";
     word[count++] = to;
-    word[count++] = from;
+    if (parts > 1) {
+        word[count++] = "--merge";
+        word[count++] = "--dont-arrange";
+    }
+    for (int i = 0; i < parts; i++) word[count++] = from[i];
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
@@ -102,23 +106,27 @@ static bool run(const char *const *options, const char *more, const char *from, 
     return wait_for(child, seconds, took);
 }
 
-bool prusa_print(jali_context *ctx, prusa_process process, const jali_mesh *plate, const char *folder,
-                 double pixel_mm, double seconds, jali_print *print, double *took)
+bool prusa_print(jali_context *ctx, prusa_process process, const jali_mesh *plate, int parts,
+                 const char *folder, double pixel_mm, double seconds, jali_print *print, double *took)
 {
-    char from[1024], to[1024];
+    static const char *const file[] = {"plate.stl", "plate-2.stl"};
+    char path[2][1024], to[1024];
+    const char *const from[2] = {path[0], path[1]};
     bool resin = process == PRUSA_SLA;
-    jali_product product = {.mesh = plate};
     jali_print_options opt = jali_print_defaults();
     opt.pixel_mm = pixel_mm;
-    snprintf(from, sizeof from, "%s/plate.stl", folder);
     snprintf(to, sizeof to, "%s/plate.%s", folder, resin ? "sl1" : "gcode");
     remove(to);
-    if (jali_write(ctx, from, &product, NULL) != JALI_OK) {
-        fprintf(stderr, "%s\n", jali_message(ctx));
-        return false;
+    for (int i = 0; i < parts; i++) {
+        jali_product product = {.mesh = &plate[i]};
+        snprintf(path[i], sizeof path[i], "%s/%s", folder, file[i]);
+        if (jali_write(ctx, path[i], &product, NULL) != JALI_OK) {
+            fprintf(stderr, "%s\n", jali_message(ctx));
+            return false;
+        }
     }
     const char *walls = process == PRUSA_CLASSIC ? "--perimeter-generator=classic" : NULL;
-    if (!run(resin ? sla : fdm, walls, from, to, seconds, took)) return false;
+    if (!run(resin ? sla : fdm, walls, from, parts, to, seconds, took)) return false;
     jali_status status =
         resin ? jali_print_sl1(ctx, to, NULL, print) : jali_print_gcode(ctx, to, &opt, print);
     if (status != JALI_OK) fprintf(stderr, "%s\n", jali_message(ctx));

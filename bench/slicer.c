@@ -2,14 +2,15 @@
 // our model and by PrusaSlicer's output.
 //
 //     slicer [DATA_FOLDER] [--only NAME] [--runs FIRST,LAST] [--own]
-//            [--maps FOLDER] [--limit SECONDS] [--sla] [--voids MM] [--exact]
+//            [--maps FOLDER] [--limit SECONDS] [--sla] [--halves] [--voids MM] [--exact]
 //     slicer --bars
 //
 // Plates are 1 mm thick: the layers of a plate are all alike. They are made for phi 0.1 / 0.3 / 0.5 mm, the
 // paper's FDM and SLA printers. The slicer's output holds no physical growth; "printed" adds it (voids below
 // phi_v close, edges grow by phi_e / 2). --own also makes plates for the slicer itself, with what --bars
-// measures of it; --sla leaves FDM out. --voids makes the plates for another phi_v than the print closes
-// voids by; --exact closes them by phi_v itself, as if no slicer had moved their edges.
+// measures of it; --sla leaves FDM out. --halves lays connected plates of FDM as two halves that overlap: the
+// slicer compares every corner of a contour with every other. --voids makes the plates for another phi_v than
+// the print closes voids by; --exact closes them by phi_v itself, as if no slicer had moved their edges.
 #include "slicer.h"
 #include "prusa.h"
 #include "runs.h"
@@ -23,7 +24,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static const double PLATE_MM = 1;
+static const double PLATE_MM = 1, OVERLAP_MM = 4; // of halves: more than three walls a side
 
 // phi_v is the width of a drawn bar that prints; what the slicer makes of that bar is off by its own
 // resolution: paths are simplified to 0.0125 mm a side, screens have pixels of 47 um. So much narrower a
@@ -82,9 +83,27 @@ jali_status grey_of(jali_context *ctx, const jali_bitmap *a, int32_t margin, jal
     return status;
 }
 
-// A plate of the picture connected at its own resolution, and nothing more; the frame is solid.
+// The left or the right half of a plate, with some of the other; the frame is whole.
+static jali_status carve_half(jali_context *ctx, const jali_bitmap *drawing, const jali_chart *chart,
+                              bool right, jali_mesh *mesh)
+{
+    jali_status status;
+    jali_bitmap half = {0};
+    int32_t first = chart->margin_px, last = chart->width_px - chart->margin_px;
+    int32_t middle = chart->width_px / 2, more = (int32_t)(OVERLAP_MM / 2 / jali_chart_pixel_mm(chart));
+    TRY(jali_bitmap_copy(ctx, drawing, &half));
+    for (int32_t y = first; y < chart->height_px - first; y++)
+        paint_run(&half, y, right ? first : middle + more, right ? middle - more : last, false);
+    TRY(carve_mask(ctx, &half, chart, mesh));
+done:
+    jali_bitmap_free(ctx, &half);
+    return status;
+}
+
+// A plate of the picture connected at its own resolution, and nothing more; the frame is solid. The whole of
+// it, then its halves if they are wanted.
 static jali_status connected_plate(jali_context *ctx, const jali_bitmap *input,
-                                   const jali_place_options *place, jali_mesh *mesh)
+                                   const jali_place_options *place, bool halves, jali_mesh mesh[3])
 {
     enum { MARGIN_PX = 16 };
     jali_status status;
@@ -97,7 +116,8 @@ static jali_status connected_plate(jali_context *ctx, const jali_bitmap *input,
     TRY(jali_connect(ctx, &framed, NULL, &framed, NULL));
     TRY(grey_of(ctx, &framed, MARGIN_PX, &grey));
     TRY(jali_place(ctx, &grey, 128, place, &chart, &drawing));
-    TRY(carve_mask(ctx, &drawing, &chart, mesh));
+    TRY(carve_mask(ctx, &drawing, &chart, &mesh[0]));
+    for (int i = 0; halves && i < 2; i++) TRY(carve_half(ctx, &drawing, &chart, i == 1, &mesh[1 + i]));
 done:
     jali_bitmap_free(ctx, &framed);
     jali_bitmap_free(ctx, &drawing);
@@ -159,8 +179,8 @@ done:
 
 // What the slicer makes of a plate, and what a printer makes of that.
 static void slice(jali_context *ctx, const witness *w, prusa_process process, const jali_mesh *mesh,
-                  const jali_reference *reference, const jali_compare_options *opt, const char *name,
-                  figures *sliced, figures *printed)
+                  int parts, const jali_reference *reference, const jali_compare_options *opt,
+                  const char *name, figures *sliced, figures *printed)
 {
     jali_print print = {0};
     jali_comparison c = {0};
@@ -169,7 +189,7 @@ static void slice(jali_context *ctx, const witness *w, prusa_process process, co
     double slack_mm = w->exact ? 0 : slicer_slack_mm[process];
     char kind[64];
     *sliced = *printed = (figures){.error = -1};
-    if (prusa_print(ctx, process, mesh, w->folder, pixel_mm, w->seconds, &print, &took) &&
+    if (prusa_print(ctx, process, mesh, parts, w->folder, pixel_mm, w->seconds, &print, &took) &&
         tell(ctx, jali_compare(ctx, reference, &print, opt, &c)) &&
         tell(ctx, grow_print(ctx, reference, &c, opt->picture_mm[0], slack_mm, &grown))) {
         *sliced = figures_of(&c.print);
@@ -236,7 +256,7 @@ static bool run_one(jali_context *ctx, const witness *w, const char *data, const
     char path[1024], name[64];
     jali_picture picture = {0};
     jali_result result[3] = {{0}}; // for the printer, for FDM as sliced, for SLA as sliced
-    jali_mesh connected = {0};
+    jali_mesh connected[3] = {{0}};
     jali_reference reference = {0};
     jali_predict_options predict = jali_predict_defaults();
     const double phi[3] = {printer_phi[0], printer_phi[1], w->voids_mm};
@@ -245,7 +265,7 @@ static bool run_one(jali_context *ctx, const witness *w, const char *data, const
     snprintf(path, sizeof path, "%s/%s.png", data, run->name);
     TRY(jali_read(ctx, path, NULL, &picture));
     TRY(jali_make(ctx, &picture, &opt, &result[0]));
-    TRY(connected_plate(ctx, &result[0].input, &opt.place, &connected));
+    TRY(connected_plate(ctx, &result[0].input, &opt.place, w->halves, connected));
     const jali_chart *chart = &result[0].chart;
     double pixel_mm = jali_chart_pixel_mm(chart);
     jali_compare_options compare = {{(chart->width_px - 2 * chart->margin_px) * pixel_mm,
@@ -258,26 +278,29 @@ static bool run_one(jali_context *ctx, const witness *w, const char *data, const
     row[MODEL_OPTIMISED] = figures_of(&result[0].result_print);
     for (int i = w->sla; i < 2; i++) {
         static const char *const kind[2] = {"connected", "optimised"};
-        const jali_mesh *const plate[2] = {&connected, &result[0].mesh};
+        bool halves = w->halves && i == 0;
+        const jali_mesh *const plate[2] = {&connected[halves], &result[0].mesh};
         prusa_process process = i == 0 ? PRUSA_FDM : PRUSA_SLA;
         figures unused;
         for (int k = 0; k < 2; k++) {
             snprintf(name, sizeof name, "%s-%.0f-%s", run->name, run->width_mm, kind[k]);
-            slice(ctx, w, process, plate[k], &reference, &compare, name, &row[SLICED + 2 * i + k],
-                  &row[PRINTED + 2 * i + k]);
+            slice(ctx, w, process, plate[k], halves && k == 0 ? 2 : 1, &reference, &compare, name,
+                  &row[SLICED + 2 * i + k], &row[PRINTED + 2 * i + k]);
         }
         if (!w->own) continue;
         opt = options_of(run->width_mm, slicer_phi[process]);
         opt.predict = false;
         TRY(jali_make(ctx, &picture, &opt, &result[1 + i]));
         snprintf(name, sizeof name, "%s-%.0f-own", run->name, run->width_mm);
-        slice(ctx, w, process, &result[1 + i].mesh, &reference, &compare, name, &row[OWN + i], &unused);
+        slice(ctx, w, process, &result[1 + i].mesh, 1, &reference, &compare, name, &row[OWN + i], &unused);
     }
 done:
     tell(ctx, status);
     jali_picture_free(ctx, &picture);
-    for (int i = 0; i < 3; i++) jali_result_free(ctx, &result[i]);
-    jali_mesh_free(ctx, &connected);
+    for (int i = 0; i < 3; i++) {
+        jali_result_free(ctx, &result[i]);
+        jali_mesh_free(ctx, &connected[i]);
+    }
     jali_reference_free(ctx, &reference);
     return status == JALI_OK;
 }
@@ -315,9 +338,9 @@ static void print_means(const figures (*row)[COLUMNS], int32_t count)
 
 static void remove_folder(const witness *w)
 {
-    static const char *const name[] = {"plate.stl", "plate.gcode", "plate.sl1"};
+    static const char *const name[] = {"plate.stl", "plate-2.stl", "plate.gcode", "plate.sl1"};
     char path[128];
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < sizeof name / sizeof *name; i++) {
         snprintf(path, sizeof path, "%s/%s", w->folder, name[i]);
         remove(path);
     }
@@ -347,6 +370,8 @@ int main(int argc, char **argv)
             sscanf(argv[++i], "%d,%d", &first, &last);
         else if (!strcmp(argv[i], "--voids") && i + 1 < argc)
             w.voids_mm = strtod(argv[++i], NULL);
+        else if (!strcmp(argv[i], "--halves"))
+            w.halves = true;
         else if (!strcmp(argv[i], "--exact"))
             w.exact = true;
         else if (!strcmp(argv[i], "--own"))

@@ -10,6 +10,7 @@ typedef struct witness {
     double seconds; // a limit
     const char *maps;
     bool own;        // plates made for the slicer as well
+    bool halves;     // of connected plates, by FDM
     bool sla;        // alone
     double voids_mm; // phi_v that the plates are made for
     bool exact;      // phi_v of the print without the slicer's slack

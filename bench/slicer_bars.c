@@ -70,7 +70,7 @@ static bool bars_of(jali_context *ctx, const witness *w, prusa_process process, 
     TRY(jali_reference_create(ctx, &bars, &predict, &reference));
     double pixel_mm = compare.picture_mm[0] / reference.picture.width_px;
     status = JALI_IO;
-    if (!prusa_print(ctx, process, &mesh, w->folder, pixel_mm, w->seconds, &print, &took)) goto done;
+    if (!prusa_print(ctx, process, &mesh, 1, w->folder, pixel_mm, w->seconds, &print, &took)) goto done;
     TRY(jali_compare(ctx, &reference, &print, &compare, &c));
     measure_bars(&c.print.printed, pixel_mm, white, wide_mm);
 done:
