@@ -65,7 +65,7 @@ static void print_row(const strength_run *r, double force, const jali_result *re
     printf("| %s, %.0f mm | %.0f | %d k | %d | %d | %.3g | %.3g | %s | %.1f | %.1f | %.1f | %.0f | %.0f |\n",
            r->name, r->width_mm, force, (last->nodes + 500) / 1000, s->round_count, s->connectors,
            first->stress_mpa, last->stress_mpa, told, stage_s, cpu[0], cpu[1], r->paper_s,
-           r->paper_s / stage_s);
+           r->paper_s / cpu[1]);
     fflush(stdout);
 }
 
