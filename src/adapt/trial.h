@@ -6,6 +6,7 @@
 #include "adapt/widths.h"
 
 #include <jali/adapt.h>
+#include <stdatomic.h>
 
 // A tone's side of the search.
 typedef struct tone {
@@ -35,8 +36,9 @@ typedef struct stamping {
     int32_t wide_rows; // of a window that decides which discs fit around a change
     int32_t rows;      // of a window that decides what a disc changes
     int32_t reach, fits_reach; // how far a change reaches, and how far away it changes which discs fit
-    int32_t pass, turn, band_count;
+    int32_t pass, band_count;
     jali_stamp_report *band; // [band_count]
+    atomic_bool *stamped;    // [band_count] in this pass
     widths w;
 } stamping;
 

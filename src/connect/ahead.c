@@ -1,8 +1,9 @@
 // Algorithm 2 joins one part after the other, but where each goes can be found before its turn.
 //
 // Method:  the searches of the next parts in the queue run side by side. One still holds when its turn comes
-//          if the part is as it was and no bridge laid since comes as near to it as what was found. Others
-//          are made again, so the bridges are those of the plain algorithm.
+//          if the part is as it was and no bridge laid since comes as near to it as it has looked; what has
+//          found nothing near then goes on from there. Others are made again, so the bridges are those of the
+//          plain algorithm.
 // Checked: tests/test_connect.c: greedy bridges and equal bytes with any number of threads.
 #include "connect/ahead.h"
 #include "base/base.h"
@@ -35,11 +36,10 @@ static bool comes_near(const jali_bridges *laid, int32_t bridge, const int32_t b
     return false;
 }
 
-static bool still_holds(const foresight *f, const parts *p, const jali_bridges *laid)
+static bool still_holds(const foresight *f, const parts *p, int32_t root, const jali_bridges *laid)
 {
-    if (!f->found) return false;
     for (int32_t i = f->laid; i < laid->count; i++)
-        if (comes_near(laid, i, p->box[f->root], f->s.steps)) return false;
+        if (comes_near(laid, i, p->box[root], f->s.steps)) return false;
     return true;
 }
 
@@ -110,13 +110,13 @@ jali_status nearest_in_turn(jali_context *ctx, const jali_bitmap *solid, parts *
     if (threads_of(ctx) > 1 && !foresight_of(a, p, root))
         TRY(search_side_by_side(ctx, solid, p, root, metric, laid, a));
     foresight *f = foresight_of(a, p, root);
-    if (f && still_holds(f, p, laid)) {
-        *bridge = f->bridge;
-        f->root = -1;
-        return JALI_OK;
-    }
     if (f) f->root = -1;
-    TRY(nearest_other(ctx, solid, p, root, metric, &a->own, bridge));
+    if (!f || !still_holds(f, p, root, laid))
+        TRY(nearest_other(ctx, solid, p, root, metric, &a->own, bridge));
+    else if (f->found)
+        *bridge = f->bridge;
+    else
+        TRY(nearest_further(ctx, solid, p, root, metric, &f->s, bridge));
 done:
     return status;
 }

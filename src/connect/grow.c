@@ -139,8 +139,8 @@ int32_t jump_length(jali_metric metric, int32_t k, int32_t most)
     return 1;
 }
 
-// A ball of crosses of radius a grows to a + px, px <= a, by the five copies of it px apart; one of squares of
-// radius b to b + px, px <= 2 b + 1, along rows, then along columns.
+// A ball of crosses of radius a grows to a + px, px <= a, by the five copies of it px apart; one of squares
+// of radius b to b + px, px <= 2 b + 1, along rows, then along columns.
 bool take_steps(jali_context *ctx, const window *w, search *s, jali_metric metric, int32_t k, int32_t jump)
 {
     int32_t squares = square_steps(metric, k + jump) - square_steps(metric, k), crosses = jump - squares;

@@ -165,34 +165,43 @@ static bool meets_within(jali_context *ctx, const window *w, int32_t limit, jali
     return false;
 }
 
-// Search from window to window, the widest with a rim of most_rim at most; *found is false when that was all.
-static jali_status search_within(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
-                                 jali_metric metric, int32_t most_rim, search *s, jali_bridge *bridge,
-                                 bool *found)
+// Draw the part alone into the narrowest window.
+static jali_status begin(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root, search *s)
 {
     jali_status status;
-    int32_t longest = solid->width_px + solid->height_px;
-    window first = first_window(solid, p, root), w = first;
-    *found = false;
+    window first = first_window(solid, p, root);
     s->steps = 0;
-    TRY(make_room(ctx, s, &w));
+    s->rim = FIRST_RIM_PX;
+    TRY(make_room(ctx, s, &first));
     TRY(room_in(ctx, &s->own, &s->own_capacity, word_count(&first)));
     draw_part(p, root, &first, s->own);
     memcpy(s->grown, s->own, (size_t)word_count(&first) * sizeof *s->grown);
-    for (int32_t rim = FIRST_RIM_PX; !stopping(ctx);) {
+done:
+    return status;
+}
+
+// Go on from window to window, the widest with a rim of most_rim at most; *found is false when that was all.
+static jali_status go_on(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                         jali_metric metric, int32_t most_rim, search *s, jali_bridge *bridge, bool *found)
+{
+    jali_status status;
+    int32_t longest = solid->width_px + solid->height_px;
+    window first = first_window(solid, p, root), w = window_around(solid, p->box[root], s->rim);
+    *found = false;
+    while (!stopping(ctx)) {
         draw_picture(solid, &w, s->picture);
-        if (meets_within(ctx, &w, MIN(rim, longest), metric, s)) {
+        if (meets_within(ctx, &w, MIN(s->rim, longest), metric, s)) {
             first_met_pixel(&w, s->picture, s->grown, s->next, bridge->to);
             nearest_own(&first, s->own, metric, s->steps, bridge->to, bridge->from);
             *found = true;
             return JALI_OK;
         }
-        if (rim > most_rim / RIM_TIMES) return JALI_OK;
+        if (s->rim > most_rim / RIM_TIMES) return JALI_OK;
         window narrow = w;
-        rim *= RIM_TIMES;
-        w = window_around(solid, p->box[root], rim);
+        w = window_around(solid, p->box[root], s->rim * RIM_TIMES);
         TRY(widen(ctx, &narrow, &w, s));
         TRY(make_room(ctx, s, &w));
+        s->rim *= RIM_TIMES;
     }
 done:
     return status;
@@ -201,8 +210,18 @@ done:
 jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
                           jali_metric metric, search *s, jali_bridge *bridge)
 {
+    jali_status status;
+    TRY(begin(ctx, solid, p, root, s));
+    TRY(nearest_further(ctx, solid, p, root, metric, s, bridge));
+done:
+    return status;
+}
+
+jali_status nearest_further(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                            jali_metric metric, search *s, jali_bridge *bridge)
+{
     bool found;
-    jali_status status = search_within(ctx, solid, p, root, metric, INT32_MAX, s, bridge, &found);
+    jali_status status = go_on(ctx, solid, p, root, metric, INT32_MAX, s, bridge, &found);
     return status == JALI_OK && !found ? step(ctx, "connect", 0) : status;
 }
 
@@ -228,8 +247,9 @@ done:
 bool nearest_near(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
                   jali_metric metric, search *s, jali_bridge *bridge)
 {
-    bool found;
-    return search_within(ctx, solid, p, root, metric, s->near_rim, s, bridge, &found) == JALI_OK && found;
+    bool found = false;
+    return begin(ctx, solid, p, root, s) == JALI_OK &&
+           go_on(ctx, solid, p, root, metric, s->near_rim, s, bridge, &found) == JALI_OK && found;
 }
 
 void search_free(jali_context *ctx, search *s)

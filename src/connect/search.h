@@ -10,6 +10,7 @@ typedef struct search {
     uint64_t *picture, *own, *grown, *next, *spare; // [capacity] words each
     size_t picture_capacity, own_capacity, grown_capacity, next_capacity, spare_capacity;
     int32_t near_rim; // as far as nearest_near looks
+    int32_t rim;      // of the window that it is in
     int32_t steps;    // to what was found last
 } search;
 
@@ -23,7 +24,10 @@ jali_status nearest_other(jali_context *ctx, const jali_bitmap *solid, const par
 ///   out    false: nothing is so near, or the run was cancelled
 bool nearest_near(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
                   jali_metric metric, search *s, jali_bridge *bridge);
-/// Get the scratch for that, and s->near_rim: how near; 0 where the part is too large.
+/// Go on where nearest_near has found nothing; the part and what lies that near are as they were.
+jali_status nearest_further(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
+                            jali_metric metric, search *s, jali_bridge *bridge);
+/// Get the scratch for nearest_near, and s->near_rim: how near; 0 where the part is too large.
 jali_status make_room_near(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
                            search *s);
 void search_free(jali_context *ctx, search *s);
