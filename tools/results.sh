@@ -23,7 +23,7 @@ sed '/^<!-- tables -->$/q' "$page" >"$kept"
     "$bench/contours" "$data"
     printf '\n## Surfaces\n\n'
     printf 'The paper'"'"'s three objects with pictures of ours, and the dense pictures; walls of 2 mm, two threads, prediction and report\n'
-    printf 'left out (`build/release/bench/surfaces`). s: from the files to the bytes of a 3MF, median of three. Added a vertex:\n'
+    printf 'left out (`build/release/bench/surfaces DATA_FOLDER --threads 2`). s: from the files to the bytes of a 3MF, median of three. Added a vertex:\n'
     printf 'triangles less the two skins'"'"' own, for each vertex of a contour (one on either skin). The same cuts as booleans by native\n'
     printf 'Manifold took 10 s (dense through a tube or the bunny) and 106 to 110 s (scenery); here that is "trace, carve".\n\n'
     "$bench/surfaces" "${data%/images}" --runs 3 --threads 2
