@@ -84,7 +84,7 @@ typedef enum option_group {
     GROUP_WITNESS = 1 << 22, // a printed result to compare with
     GROUP_SERVE = 1 << 23,
     GROUP_SMALLEST = 1 << 24,
-    GROUP_GRID = 1 << 25, // working pixels
+    GROUP_GRID = 1 << 25,         // working pixels
     NEEDS_NO_OPERAND = 1 << 29,   // no options either: the operand may be left out
     WRITES_NOTHING_TOO = 1 << 30, // no options: what is to be written, -o, may be left out
 } option_group;

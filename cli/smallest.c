@@ -7,8 +7,8 @@ static json_t *tries_of(const jali_smallest *s)
     json_t *tries = json_array();
     for (int32_t i = 0; i < s->try_count; i++) {
         const jali_smallest_try *t = &s->tried[i];
-        json_array_append_new(tries, json_pack("{s:f, s:f, s:b, s:o, s:b}", "width_mm", t->width_mm, "pixel_mm",
-                                               t->pixel_mm, "coarse", t->coarse, "lost",
+        json_array_append_new(tries, json_pack("{s:f, s:f, s:b, s:o, s:b}", "width_mm", t->width_mm,
+                                               "pixel_mm", t->pixel_mm, "coarse", t->coarse, "lost",
                                                t->pixel_mm > 0 ? lost_of(&t->white, &t->black) : json_null(),
                                                "whole", t->whole));
     }

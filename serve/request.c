@@ -124,7 +124,8 @@ static bool read_options(reading *r)
     json_t *options = json_object_get(r->root, "options");
     if (!text_of(r, "verb", 16, &name)) return false;
     if (name && !verb_is_fit(name))
-        return refuse(r, MHD_HTTP_BAD_REQUEST, "\"verb\" is carve, adapt, analyse, read, printer or smallest");
+        return refuse(r, MHD_HTTP_BAD_REQUEST,
+                      "\"verb\" is carve, adapt, analyse, read, printer or smallest");
     if (options && !json_is_object(options))
         return refuse(r, MHD_HTTP_BAD_REQUEST, "\"options\" of a job is an object, such as {\"width\": 60}");
     json_t *given = options ? json_copy(options) : json_object();

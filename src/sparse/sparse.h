@@ -1,8 +1,8 @@
 // Sparse symmetric positive definite matrices of meshes: ordered by nested dissection, factored as L D L^T.
 //
 // For laying surfaces flat: one unknown a node, places in the plane to order by, and many solutions
-// for two right sides with one factor. Apart from solver.h, which has several unknowns a node; what that would
-// cost here has not been measured.
+// for two right sides with one factor. Apart from solver.h, which has several unknowns a node; what that
+// would cost here has not been measured.
 #ifndef SPARSE_SPARSE_H
 #define SPARSE_SPARSE_H
 
