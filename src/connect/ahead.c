@@ -8,16 +8,16 @@
 #include "connect/ahead.h"
 #include "base/base.h"
 
-void ahead_create(ahead *a)
+void ahead_create(jali_context *ctx, const jali_bitmap *solid, parts *p, jali_metric metric, ahead *a)
 {
-    *a = (ahead){0};
+    *a = (ahead){.ctx = ctx, .solid = solid, .p = p, .metric = metric};
     for (int32_t i = 0; i < AHEAD; i++) a->each[i].root = -1;
 }
 
-void ahead_free(jali_context *ctx, ahead *a)
+void ahead_free(ahead *a)
 {
-    for (int32_t i = 0; i < AHEAD; i++) search_free(ctx, &a->each[i].s);
-    search_free(ctx, &a->own);
+    for (int32_t i = 0; i < AHEAD; i++) search_free(a->ctx, &a->each[i].s);
+    search_free(a->ctx, &a->own);
 }
 
 static bool is_current(const foresight *f, const parts *p)
@@ -43,10 +43,10 @@ static bool still_holds(const foresight *f, const parts *p, int32_t root, const 
     return true;
 }
 
-static foresight *foresight_of(ahead *a, const parts *p, int32_t root)
+static foresight *foresight_of(ahead *a, int32_t root)
 {
     for (int32_t i = 0; i < AHEAD; i++)
-        if (a->each[i].root == root && is_current(&a->each[i], p)) return &a->each[i];
+        if (a->each[i].root == root && is_current(&a->each[i], a->p)) return &a->each[i];
     return NULL;
 }
 
@@ -58,65 +58,55 @@ static void search_one(void *shared, int32_t index)
 }
 
 // Put the part into a place that is free.
-static jali_status ask_for(jali_context *ctx, const jali_bitmap *solid, const parts *p, int32_t root,
-                           int32_t laid, int32_t *place, ahead *a)
+static jali_status ask_for(ahead *a, int32_t root, int32_t laid, int32_t *place)
 {
-    while (is_current(&a->each[*place], p)) ++*place;
+    while (is_current(&a->each[*place], a->p)) ++*place;
     foresight *f = &a->each[*place];
-    jali_status status = make_room_near(ctx, solid, p, root, &f->s);
+    jali_status status = make_room_near(a->ctx, a->solid, a->p, root, &f->s);
     if (status != JALI_OK || f->s.near_rim == 0) return status;
-    *f = (foresight){.root = root, .laid = laid, .area = p->area[root], .s = f->s};
+    *f = (foresight){.root = root, .laid = laid, .area = a->p->area[root], .s = f->s};
     a->asked[a->asked_count++] = (*place)++;
     return JALI_OK;
 }
 
 // The part whose turn it is and, in the free places, the next ones in the queue, which stay there.
-static jali_status ask_for_next(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
-                                const jali_bridges *laid, int32_t free_places, ahead *a)
+static jali_status ask_for_next(ahead *a, int32_t root, int32_t laid, int32_t free_places)
 {
     jali_status status;
     int32_t next[AHEAD], count = 0, place = 0;
     a->asked_count = 0;
-    TRY(ask_for(ctx, solid, p, root, laid->count, &place, a));
-    while (count < free_places - 1 && smallest_part(p, &next[count])) count++;
+    TRY(ask_for(a, root, laid, &place));
+    while (count < free_places - 1 && smallest_part(a->p, &next[count])) count++;
     for (int32_t i = 0; i < count; i++) {
-        TRY(queue_part(ctx, p, next[i]));
-        if (!foresight_of(a, p, next[i])) TRY(ask_for(ctx, solid, p, next[i], laid->count, &place, a));
+        TRY(queue_part(a->ctx, a->p, next[i]));
+        if (!foresight_of(a, next[i])) TRY(ask_for(a, next[i], laid, &place));
     }
 done:
     return status;
 }
 
-static jali_status search_side_by_side(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
-                                       jali_metric metric, const jali_bridges *laid, ahead *a)
+static jali_status search_side_by_side(ahead *a, int32_t root, int32_t laid)
 {
     int32_t free_places = 0;
-    for (int32_t i = 0; i < AHEAD; i++) free_places += !is_current(&a->each[i], p);
+    for (int32_t i = 0; i < AHEAD; i++) free_places += !is_current(&a->each[i], a->p);
     if (free_places < AHEAD / 2) return JALI_OK; // one search is no work for several threads
-    jali_status status = ask_for_next(ctx, solid, p, root, laid, free_places, a);
-    if (status != JALI_OK) return status;
-    a->ctx = ctx;
-    a->solid = solid;
-    a->p = p;
-    a->metric = metric;
-    parallel(ctx, a->asked_count, search_one, a);
-    return JALI_OK;
+    jali_status status = ask_for_next(a, root, laid, free_places);
+    if (status == JALI_OK) parallel(a->ctx, a->asked_count, search_one, a);
+    return status;
 }
 
-jali_status nearest_in_turn(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
-                            jali_metric metric, const jali_bridges *laid, ahead *a, jali_bridge *bridge)
+jali_status nearest_in_turn(ahead *a, int32_t root, const jali_bridges *laid, jali_bridge *bridge)
 {
     jali_status status = JALI_OK;
-    if (threads_of(ctx) > 1 && !foresight_of(a, p, root))
-        TRY(search_side_by_side(ctx, solid, p, root, metric, laid, a));
-    foresight *f = foresight_of(a, p, root);
+    if (threads_of(a->ctx) > 1 && !foresight_of(a, root)) TRY(search_side_by_side(a, root, laid->count));
+    foresight *f = foresight_of(a, root);
     if (f) f->root = -1;
-    if (!f || !still_holds(f, p, root, laid))
-        TRY(nearest_other(ctx, solid, p, root, metric, &a->own, bridge));
+    if (!f || !still_holds(f, a->p, root, laid))
+        TRY(nearest_other(a->ctx, a->solid, a->p, root, a->metric, &a->own, bridge));
     else if (f->found)
         *bridge = f->bridge;
     else
-        TRY(nearest_further(ctx, solid, p, root, metric, &f->s, bridge));
+        TRY(nearest_further(a->ctx, a->solid, a->p, root, a->metric, &f->s, bridge));
 done:
     return status;
 }

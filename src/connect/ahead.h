@@ -21,16 +21,18 @@ typedef struct ahead {
     int32_t asked[AHEAD], asked_count; // those that are searched for now
     jali_context *ctx;
     const jali_bitmap *solid;
-    const parts *p;
+    parts *p;
     jali_metric metric;
 } ahead;
+
+/// Nothing is searched for yet; what is passed stays the caller's and is looked at by each search.
+void ahead_create(jali_context *ctx, const jali_bitmap *solid, parts *p, jali_metric metric, ahead *a);
+void ahead_free(ahead *a);
 
 /// As nearest_other, for the part whose turn it is; those whose turns come next are searched for at the same
 /// time. What is found is the same for any number of threads.
 ///   in     laid      the bridges laid so far
-jali_status nearest_in_turn(jali_context *ctx, const jali_bitmap *solid, parts *p, int32_t root,
-                            jali_metric metric, const jali_bridges *laid, ahead *a, jali_bridge *bridge);
-void ahead_create(ahead *a);
-void ahead_free(jali_context *ctx, ahead *a);
+///   fails  JALI_NO_MEMORY, JALI_CANCELLED
+jali_status nearest_in_turn(ahead *a, int32_t root, const jali_bridges *laid, jali_bridge *bridge);
 
 #endif

@@ -99,7 +99,7 @@ static jali_status find_way(jali_context *ctx, joining *j, const jali_connect_op
     jali_status status;
     *found = true;
     *bridge = (jali_bridge){0};
-    TRY(nearest_in_turn(ctx, j->solid, &j->p, root, opt->metric, &j->laid, &j->a, bridge));
+    TRY(nearest_in_turn(&j->a, root, &j->laid, bridge));
     if (!opt->blocked || line_is_free(j->solid, opt->blocked, bridge->from, bridge->to)) return JALI_OK;
     TRY(find_detour(ctx, j->solid, opt->blocked, &j->p, root, opt->metric, &j->d, bridge, found));
     if (*found) TRY(keep_corners(ctx, j, bridge));
@@ -134,7 +134,7 @@ jali_status jali_connect(jali_context *ctx, const jali_bitmap *drawing, const ja
     jali_connect_options opt = given ? *given : jali_connect_defaults();
     jali_bitmap solid = {0};
     joining j = {.solid = &solid};
-    ahead_create(&j.a);
+    ahead_create(ctx, &solid, &j.p, opt.metric, &j.a);
     TRY(jali_bitmap_copy(ctx, drawing, &solid));
     TRY(parts_create(ctx, &solid, &j.p));
     int32_t parts_before = j.p.alive;
@@ -157,7 +157,7 @@ done:
     jali_bridges_free(ctx, &j.laid);
     jali_bitmap_free(ctx, &solid);
     parts_free(ctx, &j.p);
-    ahead_free(ctx, &j.a);
+    ahead_free(&j.a);
     detour_free(ctx, &j.d);
     return status;
 }
