@@ -90,9 +90,10 @@ static jali_status record(jali_context *ctx, job *j, double stress, double raw, 
 }
 
 // The outline as it is, finely: what counts. The stiffness is of no further use.
-static jali_status judge(jali_context *ctx, job *j)
+static jali_status judge_fine(jali_context *ctx, void *of_job)
 {
     jali_status status;
+    job *j = of_job;
     jali_strength *s = j->s;
     const jali_analysis *a = &s->analysis;
     TRY(make_sheet(ctx, j, j->outline, &j->fine, &s->sheet));
@@ -105,9 +106,10 @@ done:
     return status;
 }
 
-static jali_status make_draft(jali_context *ctx, job *j)
+static jali_status make_draft(jali_context *ctx, void *of_job)
 {
     jali_status status;
+    job *j = of_job;
     jali_analyse_options opt = j->opt.analyse;
     opt.rough = true;
     look_free(ctx, &j->draft);
@@ -115,6 +117,13 @@ static jali_status make_draft(jali_context *ctx, job *j)
     TRY(jali_analyse(ctx, &j->draft.sheet, &opt, &j->draft.analysis));
 done:
     return status;
+}
+
+// The draft of the same outline, when it is asked for and not there, is made meanwhile.
+static jali_status judge(jali_context *ctx, job *j)
+{
+    bool drafted = j->draft.sheet.node_count > 0;
+    return j->opt.refine && !drafted ? do_both(ctx, judge_fine, j, make_draft, j) : judge_fine(ctx, j);
 }
 
 // What was judged becomes "before" when it is the first, and goes otherwise.
@@ -163,7 +172,8 @@ static jali_status search(jali_context *ctx, job *j, double limit, bool *found)
                        s->connectors + r.round[i].connectors, j->draft.sheet.node_count));
         s->connectors += r.connectors;
         TRY(draw(ctx, j, &r.bridges));
-        TRY(make_draft(ctx, j));
+        look_free(ctx, &j->draft);
+        if (j->rounds_left > 0) TRY(make_draft(ctx, j)); // else judge() does
     }
 done:
     jali_bitmap_free(ctx, &blocked);
@@ -179,7 +189,7 @@ static jali_status strengthen(jali_context *ctx, job *j, bool *changed)
     if (!j->draft.sheet.node_count) TRY(make_draft(ctx, j));
     double apart = fmin(fmax(1, j->s->analysis.stress.value / j->draft.analysis.stress.value), MOST_APART);
     double limit = MARGIN * j->s->limit_mpa / apart;
-    while (j->draft.analysis.stress.value > limit && j->rounds_left > 0) {
+    while (j->rounds_left > 0 && j->draft.analysis.stress.value > limit) {
         bool found;
         TRY(search(ctx, j, limit, &found));
         *changed |= found;
@@ -339,7 +349,6 @@ jali_status jali_strengthen(jali_context *ctx, const jali_chart *chart, const ja
         set_aside(ctx, s);
         TRY(judge(ctx, &j));
     }
-    if (j.opt.refine && !j.draft.sheet.node_count) TRY(make_draft(ctx, &j));
     if (j.draft.sheet.node_count) s->change_mpa = s->analysis.stress.value - j.draft.analysis.stress.value;
     if (s->sound) s->advice = (jali_advice){0};
     if (!s->sound && j.opt.advise) TRY(advise(ctx, &j));

@@ -52,6 +52,60 @@ TEST(threads_of_a_pool_run_what_they_call_themselves)
     }
 }
 
+// A task that allocates, is parallel within and may fail.
+typedef struct task {
+    int32_t *result; // [500]
+    jali_status fails;
+    const char *why;
+} task;
+
+static jali_status fill_and_fail(jali_context *limited, void *of_task)
+{
+    jali_status status;
+    task *t = of_task;
+    arena_mark mark = arena_here(limited);
+    int32_t *scratch;
+    TRY(ALLOCATE(limited, t->result, 500));
+    for (int32_t round = 0; round < 20; round++) {
+        TRY(ARENA(limited, scratch, 500));
+        parallel(limited, 500, square, scratch);
+        memcpy(t->result, scratch, 500 * sizeof *scratch);
+        TRY(step(limited, "task", round / 20.0));
+    }
+    if (t->fails != JALI_OK) status = fail(limited, t->fails, "%s", t->why);
+done:
+    arena_rewind(limited, mark);
+    return status;
+}
+
+static jali_status fill_both(jali_context *limited, void *of_tasks)
+{
+    task *t = of_tasks;
+    for (int i = 0; i < 2; i++) t[i].result = NULL;
+    jali_status status = do_both(limited, fill_and_fail, &t[0], fill_and_fail, &t[1]);
+    for (int32_t i = 0; i < 500 && status == JALI_OK; i++)
+        CHECK(t[0].result[i] == i * i && t[1].result[i] == i * i);
+    for (int i = 0; i < 2; i++) release(limited, t[i].result);
+    return status;
+}
+
+TEST(two_tasks_at_one_time_share_nothing)
+{
+    task t[2] = {{.why = "own"}, {.why = "other"}};
+    for (int32_t round = 0; round < 50; round++) CHECK_OK(fill_both(ctx, t));
+    t[1].fails = JALI_IO;
+    CHECK_INT(fill_both(ctx, t), JALI_IO);
+    assert_string_equal(jali_message(ctx), "other");
+    t[0].fails = JALI_NO_RESULT;
+    CHECK_INT(fill_both(ctx, t), JALI_NO_RESULT);
+    assert_string_equal(jali_message(ctx), "own");
+    t[0].fails = t[1].fails = JALI_OK;
+    refuse_each_allocation(fill_both, t);
+    CHECK_OK(fill_both(ctx, t)); // nothing was left behind
+    jali_cancel(ctx);
+    CHECK_INT(fill_both(ctx, t), JALI_CANCELLED);
+}
+
 TEST(memory_limit_is_a_sentence)
 {
     jali_context_options opt = jali_context_defaults();
@@ -129,6 +183,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(threads_of_a_pool_call_each_index_once, open_context, close_context),
         cmocka_unit_test_setup_teardown(threads_of_a_pool_run_what_they_call_themselves, open_context,
                                         close_context),
+        cmocka_unit_test_setup_teardown(two_tasks_at_one_time_share_nothing, open_context, close_context),
         cmocka_unit_test_setup_teardown(memory_limit_is_a_sentence, open_context, close_context),
         cmocka_unit_test_setup_teardown(cancel_and_timeout_stop_the_next_step, open_context, close_context),
         cmocka_unit_test_setup_teardown(bad_context_options_are_refused, open_context, close_context),

@@ -140,7 +140,7 @@ static inline void refusing_release(void *user, void *block)
 
 /// Run `body` once for each `stride`-th allocation it makes, that one refused: the status must be
 /// JALI_NO_MEMORY and nothing may leak. Ends when a run needs no more allocations. The count is exact, for
-/// threads of a pool allocate nothing.
+/// threads of a pool allocate nothing, and tasks at one time (do_both) as much in any order.
 static inline void refuse_allocations(jali_status (*body)(jali_context *limited, void *data), void *data,
                                       int64_t stride)
 {

@@ -48,8 +48,8 @@ typedef struct jali_context_options {
     int32_t threads;           // worker threads, >= 1; 0 (default) = one a processor. Never changes a result
     uint64_t max_memory_bytes; // refuse to hold more than this; 0 (default) = no limit
     double timeout_seconds;    // stop with JALI_LIMIT after this long; 0 (default) = no limit
-    void *(*allocate)(void *user, size_t bytes);                      // NULL (default) = malloc
-    void (*release)(void *user, void *block);                         // NULL (default) = free
+    void *(*allocate)(void *user, size_t bytes); // NULL (default) = malloc. These two are called from any of
+    void (*release)(void *user, void *block);    // the threads, one at a time; NULL (default) = free
     void (*progress)(void *user, const char *stage, double fraction); // called on the caller's thread
     void *user;                                                       // handed to the three functions above
     const jali_files *files; // no file is opened: these are read and written; NULL (default) = the system's.

@@ -63,7 +63,15 @@ const jali_files *files_of(const jali_context *ctx);
 /// writes to a place of its own; `work` allocates nothing. Items, not threads, set the split: any thread
 /// count gives the same result. What `work` calls that is parallel too runs in its own thread.
 void parallel(jali_context *ctx, int32_t count, void (*work)(void *shared, int32_t index), void *shared);
-/// How many threads that takes, the caller's own counted.
+
+/// Two tasks at one time: `own` in this thread, `other` in one of the pool's or, when none is free, after it.
+/// Both may allocate, fail and be parallel within; they share nothing that either changes. `other` has a
+/// context of its own, which tells no progress; when `own` fails, it is cancelled.
+///   fails  as `own`, else as `other`
+jali_status do_both(jali_context *ctx, jali_status (*own)(jali_context *ctx, void *of_own), void *of_own,
+                    jali_status (*other)(jali_context *ctx, void *of_other), void *of_other);
+
+/// How many threads parallel() takes, the caller's own counted.
 int32_t threads_of(const jali_context *ctx);
 
 /// Report progress (fraction 0 .. 1 of this stage) and ask whether to go on.

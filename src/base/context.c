@@ -4,6 +4,7 @@
 // instead of a killed process.
 #include "base/pool.h"
 
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -29,11 +30,14 @@ typedef struct arena_chunk {
 
 struct jali_context {
     jali_context_options opt;
+    jali_context *trunk; // of a branch (do_both): whose memory, limits and threads these are; else itself
     atomic_bool cancelled;
-    _Atomic uint64_t held_bytes, peak_bytes;
-    double deadline_seconds; // 0 = none
-    arena_chunk *arena;
+    _Atomic uint64_t held_bytes, peak_bytes; // of the trunk, as are:
+    pthread_mutex_t allocating;              // the caller's allocator serves one at a time
+    double deadline_seconds;                 // 0 = none
     pool *pool;
+    bool sharing; // parallel() is at work; what that calls is its thread's alone
+    arena_chunk *arena;
     char message[MESSAGE_BYTES];
 };
 
@@ -90,17 +94,17 @@ jali_status fail(jali_context *ctx, jali_status status, const char *format, ...)
     return status;
 }
 
-static void account(jali_context *ctx, uint64_t bytes)
+static void account(jali_context *trunk, uint64_t bytes)
 {
-    uint64_t held = atomic_fetch_add(&ctx->held_bytes, bytes) + bytes;
-    uint64_t peak = atomic_load(&ctx->peak_bytes);
-    while (held > peak && !atomic_compare_exchange_weak(&ctx->peak_bytes, &peak, held)) {
+    uint64_t held = atomic_fetch_add(&trunk->held_bytes, bytes) + bytes;
+    uint64_t peak = atomic_load(&trunk->peak_bytes);
+    while (held > peak && !atomic_compare_exchange_weak(&trunk->peak_bytes, &peak, held)) {
     }
 }
 
 static jali_status within_limit(jali_context *ctx, uint64_t bytes)
 {
-    if (ctx->opt.max_memory_bytes && atomic_load(&ctx->held_bytes) + bytes > ctx->opt.max_memory_bytes)
+    if (ctx->opt.max_memory_bytes && atomic_load(&ctx->trunk->held_bytes) + bytes > ctx->opt.max_memory_bytes)
         return fail(ctx, JALI_LIMIT, "%.0f MB more would pass the memory limit of %.0f MB (--max-memory)",
                     (double)bytes / 1e6, (double)ctx->opt.max_memory_bytes / 1e6);
     return JALI_OK;
@@ -116,11 +120,13 @@ jali_status allocate_array(jali_context *ctx, void *where, size_t count, size_t 
                     size);
     jali_status status = within_limit(ctx, bytes);
     if (status != JALI_OK) return status;
+    pthread_mutex_lock(&ctx->trunk->allocating);
     char *raw = ctx->opt.allocate(ctx->opt.user, bytes + 2 * HEAD_BYTES);
+    pthread_mutex_unlock(&ctx->trunk->allocating);
     if (!raw) return fail(ctx, JALI_NO_MEMORY, "no memory for %.3f MB more", (double)bytes / 1e6);
     char *block = raw + HEAD_BYTES + (HEAD_BYTES - (uintptr_t)raw % HEAD_BYTES);
     *(block_head *)(block - HEAD_BYTES) = (block_head){raw, bytes};
-    account(ctx, bytes);
+    account(ctx->trunk, bytes);
     memcpy(where, &block, sizeof block);
     return JALI_OK;
 }
@@ -156,8 +162,10 @@ void release(jali_context *ctx, void *block)
 {
     if (!block) return;
     block_head head = *(block_head *)((char *)block - HEAD_BYTES);
-    atomic_fetch_sub(&ctx->held_bytes, head.bytes);
+    atomic_fetch_sub(&ctx->trunk->held_bytes, head.bytes);
+    pthread_mutex_lock(&ctx->trunk->allocating);
     ctx->opt.release(ctx->opt.user, head.raw);
+    pthread_mutex_unlock(&ctx->trunk->allocating);
 }
 
 jali_status grow_array(jali_context *ctx, void *where, size_t *capacity, size_t needed, size_t size)
@@ -220,7 +228,54 @@ const jali_files *files_of(const jali_context *ctx)
 
 void parallel(jali_context *ctx, int32_t count, void (*work)(void *shared, int32_t index), void *shared)
 {
-    pool_run(ctx->pool, count, work, shared);
+    pool_work w;
+    if (count <= 1 || ctx->sharing || ctx->opt.threads == 1) {
+        for (int32_t i = 0; i < count; i++) work(shared, i);
+        return;
+    }
+    ctx->sharing = true;
+    pool_offer(ctx->pool, &w, count, work, shared);
+    pool_finish(ctx->pool, &w);
+    ctx->sharing = false;
+}
+
+typedef struct branch {
+    jali_context ctx;
+    jali_status (*task)(jali_context *ctx, void *of_task);
+    void *of_task;
+    jali_status status;
+} branch;
+
+static void run_branch(void *shared, int32_t index)
+{
+    branch *b = shared;
+    (void)index;
+    b->status = b->task(&b->ctx, b->of_task);
+}
+
+jali_status do_both(jali_context *ctx, jali_status (*own)(jali_context *ctx, void *of_own), void *of_own,
+                    jali_status (*other)(jali_context *ctx, void *of_other), void *of_other)
+{
+    pool_work w;
+    branch b = {.ctx = {.opt = ctx->opt,
+                        .trunk = ctx->trunk,
+                        .deadline_seconds = ctx->deadline_seconds,
+                        .pool = ctx->pool,
+                        .sharing = ctx->sharing},
+                .task = other,
+                .of_task = of_other};
+    b.ctx.opt.progress = NULL; // which is told on the caller's thread
+    bool alone = ctx->sharing || ctx->opt.threads == 1;
+    if (!alone) pool_offer(ctx->pool, &w, 1, run_branch, &b);
+    jali_status status = own(ctx, of_own);
+    if (status != JALI_OK) atomic_store(&b.ctx.cancelled, true);
+    if (!alone)
+        pool_finish(ctx->pool, &w);
+    else
+        run_branch(&b, 0);
+    arena_rewind(&b.ctx, (arena_mark){0});
+    if (status != JALI_OK || b.status == JALI_OK) return status;
+    return fail(ctx, b.status, "%s", b.ctx.message);
 }
 
 int32_t threads_of(const jali_context *ctx)
@@ -228,15 +283,20 @@ int32_t threads_of(const jali_context *ctx)
     return ctx->opt.threads;
 }
 
-bool stopping(const jali_context *ctx)
+static bool is_cancelled(const jali_context *ctx)
 {
     return atomic_load_explicit(&ctx->cancelled, memory_order_relaxed) ||
-           (ctx->deadline_seconds > 0 && now_seconds() > ctx->deadline_seconds);
+           atomic_load_explicit(&ctx->trunk->cancelled, memory_order_relaxed);
+}
+
+bool stopping(const jali_context *ctx)
+{
+    return is_cancelled(ctx) || (ctx->deadline_seconds > 0 && now_seconds() > ctx->deadline_seconds);
 }
 
 jali_status step(jali_context *ctx, const char *stage, double fraction)
 {
-    if (atomic_load(&ctx->cancelled)) return fail(ctx, JALI_CANCELLED, "interrupted during %s", stage);
+    if (is_cancelled(ctx)) return fail(ctx, JALI_CANCELLED, "interrupted during %s", stage);
     if (ctx->deadline_seconds > 0 && now_seconds() > ctx->deadline_seconds)
         return fail(ctx, JALI_LIMIT, "the time limit of %g s was reached during %s (--timeout)",
                     ctx->opt.timeout_seconds, stage);
@@ -256,9 +316,12 @@ jali_status jali_context_create(const jali_context_options *given, jali_context 
     if (!ctx) return JALI_NO_MEMORY;
     memset(ctx, 0, sizeof *ctx);
     ctx->opt = opt;
+    ctx->trunk = ctx;
+    pthread_mutex_init(&ctx->allocating, NULL);
     if (opt.timeout_seconds > 0) ctx->deadline_seconds = now_seconds() + opt.timeout_seconds;
     jali_status status = pool_create(ctx, opt.threads, &ctx->pool);
     if (status != JALI_OK) {
+        pthread_mutex_destroy(&ctx->allocating);
         opt.release(opt.user, ctx);
         return status;
     }
@@ -272,5 +335,6 @@ void jali_context_free(jali_context *ctx)
     arena_rewind(ctx, (arena_mark){0});
     pool_free(ctx, ctx->pool);
     jali_context_options opt = ctx->opt;
+    pthread_mutex_destroy(&ctx->allocating);
     opt.release(opt.user, ctx);
 }

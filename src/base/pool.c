@@ -1,15 +1,15 @@
-// The thread pool: a run hands out indices by an atomic counter; workers that are there take part.
+// The thread pool: works hand out their indices by an atomic counter; workers that are free take part.
 //
 // Why so:  a picture of a megapixel makes some hundred runs of 10 to 100 us, and a sleeper takes about as
 // long to
-//          wake. So a worker looks out for the next run for a while before it sleeps, and nobody waits for
-//          one that comes late: who has not entered when the indices are out does not enter any more.
-// Checked: every test that compares thread counts; the thread sanitizer.
+//          wake. So a worker looks out for the next work for a while before it sleeps, and nobody waits for
+//          one that comes late: who has not entered when the indices are out does not enter any more. Of
+//          several works that are open the oldest comes first: it is the coarsest.
+// Checked: tests/test_base.c; every test that compares thread counts; the thread sanitizer.
 #include "base/pool.h"
 
 #include <pthread.h>
 #include <signal.h>
-#include <stdatomic.h>
 
 enum { LOOKS = 4000 }; // of a worker for the next run, about 50 us
 
@@ -18,21 +18,15 @@ struct pool {
     pthread_cond_t wake, finished;
     pthread_t *thread; // [started]
     int32_t started;
-    atomic_int inside; // workers that take part in this run; changes under the lock
-    atomic_uint runs;  // counts runs, so that a worker knows a new one; changes under the lock
-    bool open;         // this run can still be entered
-    atomic_bool busy;  // from the first index to the last; a run within a run is its caller's alone
+    atomic_uint offers; // counts them, so that a worker knows a new one; changes under the lock
+    pool_work *open;    // the oldest; under the lock
     atomic_bool closing;
-    void (*work)(void *shared, int32_t index);
-    void *shared;
-    int32_t count;
-    atomic_int next;
 };
 
-static void drain(pool *p)
+static void drain(pool_work *w)
 {
     int32_t index;
-    while ((index = atomic_fetch_add(&p->next, 1)) < p->count) p->work(p->shared, index);
+    while ((index = atomic_fetch_add(&w->next, 1)) < w->count) w->work(w->shared, index);
 }
 
 static inline void look_away(void)
@@ -42,22 +36,30 @@ static inline void look_away(void)
 #endif
 }
 
+// The oldest work that has indices left.
+static pool_work *oldest(const pool *p)
+{
+    pool_work *w = p->open;
+    while (w && atomic_load(&w->next) >= w->count) w = w->next_open;
+    return w;
+}
+
 static void *worker(void *argument)
 {
     pool *p = argument;
     unsigned seen = 0;
     while (!atomic_load(&p->closing)) {
-        for (int32_t i = 0; i < LOOKS && atomic_load(&p->runs) == seen; i++) look_away();
+        for (int32_t i = 0; i < LOOKS && atomic_load(&p->offers) == seen; i++) look_away();
         pthread_mutex_lock(&p->lock);
-        while (p->runs == seen && !p->closing) pthread_cond_wait(&p->wake, &p->lock);
-        seen = p->runs;
-        bool enters = p->open;
-        p->inside += enters;
-        pthread_mutex_unlock(&p->lock);
-        if (!enters) continue;
-        drain(p);
-        pthread_mutex_lock(&p->lock);
-        if (--p->inside == 0) pthread_cond_signal(&p->finished);
+        while (p->offers == seen && !p->closing) pthread_cond_wait(&p->wake, &p->lock);
+        seen = p->offers;
+        for (pool_work *w; (w = oldest(p));) {
+            w->inside++;
+            pthread_mutex_unlock(&p->lock);
+            drain(w);
+            pthread_mutex_lock(&p->lock);
+            if (--w->inside == 0) pthread_cond_broadcast(&p->finished);
+        }
         pthread_mutex_unlock(&p->lock);
     }
     return NULL;
@@ -73,31 +75,37 @@ static void start_workers(pool *p, int32_t wanted)
     pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
-void pool_run(pool *p, int32_t count, void (*work)(void *shared, int32_t index), void *shared)
+void pool_offer(pool *p, pool_work *w, int32_t count, void (*work)(void *shared, int32_t index), void *shared)
 {
-    if (p->started == 0 || count <= 1 || p->busy) {
-        for (int32_t i = 0; i < count; i++) work(shared, i);
-        return;
-    }
-    p->busy = true;
+    w->work = work;
+    w->shared = shared;
+    w->count = count;
+    w->next_open = NULL;
+    atomic_init(&w->next, 0);
+    atomic_init(&w->inside, 0);
+    if (p->started == 0) return;
     pthread_mutex_lock(&p->lock);
-    p->work = work;
-    p->shared = shared;
-    p->count = count;
-    p->next = 0;
-    p->open = true;
-    p->runs++;
+    pool_work **last = &p->open;
+    while (*last) last = &(*last)->next_open;
+    *last = w;
+    p->offers++;
     pthread_cond_broadcast(&p->wake);
     pthread_mutex_unlock(&p->lock);
-    drain(p);
+}
+
+void pool_finish(pool *p, pool_work *w)
+{
+    drain(w);
+    if (p->started == 0) return;
     pthread_mutex_lock(&p->lock);
-    p->open = false;
+    pool_work **at = &p->open;
+    while (*at != w) at = &(*at)->next_open;
+    *at = w->next_open;
     pthread_mutex_unlock(&p->lock);
-    for (int32_t i = 0; i < LOOKS && atomic_load(&p->inside) > 0; i++) look_away();
+    for (int32_t i = 0; i < LOOKS && atomic_load(&w->inside) > 0; i++) look_away();
     pthread_mutex_lock(&p->lock);
-    while (p->inside > 0) pthread_cond_wait(&p->finished, &p->lock);
+    while (w->inside > 0) pthread_cond_wait(&p->finished, &p->lock);
     pthread_mutex_unlock(&p->lock);
-    p->busy = false;
 }
 
 jali_status pool_create(jali_context *ctx, int32_t threads, pool **out)
