@@ -82,6 +82,11 @@ static int32_t first_node_of(int32_t node_count, int rank, int processes)
     return (int32_t)((int64_t)node_count * rank / processes);
 }
 
+bool solver_serves_threads(void)
+{
+    return false;
+}
+
 void solver_share(int32_t node_count, int32_t *from, int32_t *to)
 {
     int processes, rank = rank_of_process(&processes);

@@ -10,6 +10,7 @@
 #include <jali/strengthen.h>
 
 #include "base/base.h"
+#include "sparse/solver.h"
 
 #include <math.h>
 
@@ -122,8 +123,10 @@ done:
 // The draft of the same outline, when it is asked for and not there, is made meanwhile.
 static jali_status judge(jali_context *ctx, job *j)
 {
-    bool drafted = j->draft.sheet.node_count > 0;
-    return j->opt.refine && !drafted ? do_both(ctx, judge_fine, j, make_draft, j) : judge_fine(ctx, j);
+    bool drafts = j->opt.refine && !j->draft.sheet.node_count;
+    if (drafts && solver_serves_threads()) return do_both(ctx, judge_fine, j, make_draft, j);
+    jali_status status = judge_fine(ctx, j);
+    return status == JALI_OK && drafts ? make_draft(ctx, j) : status;
 }
 
 // What was judged becomes "before" when it is the first, and goes otherwise.

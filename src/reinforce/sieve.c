@@ -23,19 +23,17 @@ double visible_pixels(const span *s, const rank_options *opt)
     return fmax(1, s->length_mm * s->width_mm / (opt->pixel_mm * opt->pixel_mm));
 }
 
-// The stress that a beam alone would take off a hot spot a visible pixel, F guessed.
-static double guessed_worth(const beam *b, const span *s, const outlook *now, const double moved[BEAM_MODES],
-                            const double influence[BEAM_MODES], const rank_options *opt)
+// The force a unit of each mode's deformation without the beam, F guessed; by a visible pixel.
+static void guess_forces(const beam *b, const span *s, const outlook *now, const rank_options *opt,
+                         double force[BEAM_MODES])
 {
-    double relief = 0;
     double softness = 4 * (length_of(now->u[b->node[0]]) + length_of(now->u[b->node[3]])) / now->load_n;
     for (int m = 0; m < b->mode_count; m++) {
         // A turn's softness: that of a place which a force moves so far a length away.
         bool turns = m == 0 || m == 1 || m == 3;
         double f = turns ? softness / (s->length_mm * s->length_mm + s->width_mm * s->width_mm) : softness;
-        relief += influence[m] * moved[m] / (1 / b->stiffness[m] + f);
+        force[m] = 1 / (1 / b->stiffness[m] + f) / visible_pixels(s, opt);
     }
-    return relief / visible_pixels(s, opt);
 }
 
 // Least distance between two straight connectors, each at nine places.
@@ -105,19 +103,28 @@ typedef struct sieving {
     podium *podium;                         // [hotspot_count * WIDTHS]
 } sieving;
 
+// Deformations are the same in every width.
 static void guess_worths(void *shared, int32_t index)
 {
     const sieving *v = shared;
+    const outlook *now = v->now;
     beam b;
     span s = v->all->span[v->first + index];
-    double moved[BEAM_MODES], influence[MOST_HOTSPOTS][BEAM_MODES];
-    for (int w = 0; w < WIDTHS; w++) { // deformations are the same in every width
+    double moved[BEAM_MODES], influence[BEAM_MODES], force[WIDTHS][BEAM_MODES];
+    s.width_mm = v->opt->width_mm;
+    beam_along(v->sheet, v->loops, &s, v->material, v->bending_only, &b);
+    beam_deformation(&b, now->u, moved);
+    for (int w = 0; w < WIDTHS; w++) {
         s.width_mm = times_wider[w] * v->opt->width_mm;
-        beam_along(v->sheet, v->loops, &s, v->material, v->bending_only, &b);
-        if (w == 0) beam_deformation(&b, v->now->u, moved);
-        for (int32_t h = 0; h < v->now->hotspot_count; h++) {
-            if (w == 0) beam_deformation(&b, v->now->adjoint[h], influence[h]);
-            v->worth[index][h][w] = guessed_worth(&b, &s, v->now, moved, influence[h], v->opt);
+        beam_stiffen(&b, v->material, s.width_mm);
+        guess_forces(&b, &s, now, v->opt, force[w]);
+        for (int m = 0; m < b.mode_count; m++) force[w][m] *= moved[m];
+    }
+    for (int32_t h = 0; h < now->hotspot_count; h++) {
+        beam_deformation(&b, now->adjoint[h], influence);
+        for (int w = 0; w < WIDTHS; w++) {
+            v->worth[index][h][w] = 0;
+            for (int m = 0; m < b.mode_count; m++) v->worth[index][h][w] += influence[m] * force[w][m];
         }
     }
 }

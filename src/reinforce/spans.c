@@ -12,7 +12,7 @@
 
 static const double SLANT[] = {0, 0.6, -0.6, 1.05, -1.05}; // rad from the square direction
 
-enum { RAYS = sizeof SLANT / sizeof *SLANT, CELL_PX = 4 };
+enum { RAYS = sizeof SLANT / sizeof *SLANT, CELL_PX = 4, FANS = 64 };
 
 void borders_free(jali_context *ctx, borders *b)
 {
@@ -145,25 +145,61 @@ static bool outward(const jali_sheet *sheet, const borders *b, int32_t i, double
     return true;
 }
 
-static jali_status spans_from(jali_context *ctx, const jali_sheet *sheet, const borders *b,
-                              const jali_bitmap *mask, const jali_bitmap *blocked, const jali_chart *chart,
-                              int32_t from, double longest_mm, spans *found)
+// What the fans of rays share.
+typedef struct fanning {
+    const jali_sheet *sheet;
+    const borders *borders;
+    const jali_bitmap *mask, *blocked;
+    const jali_chart *chart;
+    double longest_mm;
+    int32_t count;
+    int32_t *from;     // [count] border nodes
+    span (*way)[RAYS]; // [count] one a ray; without width, and without length where there is none
+} fanning;
+
+static void cast_fan(const fanning *f, int32_t from, span way[RAYS])
 {
     double out[2];
-    double longest_px = 4 * longest_mm / jali_chart_pixel_mm(chart); // stretched at most four times
-    if (!outward(sheet, b, from, out)) return JALI_OK;
+    double longest_px = 4 * f->longest_mm / jali_chart_pixel_mm(f->chart); // stretched at most four times
+    memset(way, 0, RAYS * sizeof *way);
+    if (!outward(f->sheet, f->borders, from, out)) return;
     for (int i = 0; i < RAYS; i++) {
         double c = cos(SLANT[i]), s = sin(SLANT[i]);
-        int32_t to = cast(sheet, b, mask, blocked, chart, from,
+        int32_t to = cast(f->sheet, f->borders, f->mask, f->blocked, f->chart, from,
                           (double[]){c * out[0] - s * out[1], s * out[0] + c * out[1]}, longest_px);
-        if (to < 0 || to == from || to == b->next[from] || to == b->last[from]) continue;
-        double length = distance(sheet->node[from], sheet->node[to]);
-        if (length > longest_mm) continue;
-        jali_status status = GROW(ctx, found->span, found->capacity, (size_t)found->count + 1);
-        if (status != JALI_OK) return status;
-        found->span[found->count++] = (span){{from, to}, length, 0, 0};
+        if (to < 0 || to == from || to == f->borders->next[from] || to == f->borders->last[from]) continue;
+        double length = distance(f->sheet->node[from], f->sheet->node[to]);
+        if (length <= f->longest_mm) way[i] = (span){{from, to}, length, 0, 0};
     }
-    return JALI_OK;
+}
+
+static void cast_fans(void *shared, int32_t block)
+{
+    const fanning *f = shared;
+    for (int32_t i = block * FANS; i < MIN((block + 1) * FANS, f->count); i++)
+        cast_fan(f, f->from[i], f->way[i]);
+}
+
+// Border nodes some way apart, along each loop.
+static void space_out(fanning *f, double apart_mm, uint8_t *done_with)
+{
+    const jali_sheet *sheet = f->sheet;
+    for (int32_t begin = 0; begin < sheet->node_count; begin++) {
+        if (done_with[begin] || !on_border(sheet, f->borders, begin)) continue;
+        double since = apart_mm;
+        int32_t i = begin;
+        do {
+            done_with[i] = 1;
+            if (since >= apart_mm) {
+                f->from[f->count++] = i;
+                since = 0;
+            }
+            int32_t next = f->borders->next[i];
+            if (!on_border(sheet, f->borders, next)) break;
+            since += distance(sheet->node[i], sheet->node[next]);
+            i = next;
+        } while (!done_with[i]);
+    }
 }
 
 jali_status find_spans(jali_context *ctx, const jali_sheet *sheet, const borders *b, const jali_bitmap *mask,
@@ -171,31 +207,26 @@ jali_status find_spans(jali_context *ctx, const jali_sheet *sheet, const borders
                        double longest_mm, spans *found)
 {
     jali_status status;
-    uint8_t *done_with = NULL;
+    arena_mark mark = arena_here(ctx);
+    uint8_t *done_with;
+    fanning f = {sheet, b, mask, blocked, chart, longest_mm, 0, NULL, NULL};
     *found = (spans){0};
-    TRY(ALLOCATE_CLEARED(ctx, done_with, sheet->node_count));
-    for (int32_t begin = 0; begin < sheet->node_count; begin++) {
-        if (done_with[begin] || !on_border(sheet, b, begin)) continue;
-        double since = apart_mm;
-        int32_t i = begin;
-        do { // along the loop
-            done_with[i] = 1;
-            if (since >= apart_mm) {
-                TRY(spans_from(ctx, sheet, b, mask, blocked, chart, i, longest_mm, found));
-                since = 0;
-            }
-            int32_t next = b->next[i];
-            if (!on_border(sheet, b, next)) break;
-            since += distance(sheet->node[i], sheet->node[next]);
-            i = next;
-        } while (!done_with[i]);
-        TRY(step(ctx, "reinforce", 0));
-    }
+    TRY(ARENA(ctx, done_with, sheet->node_count));
+    TRY(ARENA(ctx, f.from, sheet->node_count));
+    memset(done_with, 0, (size_t)sheet->node_count);
+    space_out(&f, apart_mm, done_with);
+    TRY(ARENA(ctx, f.way, f.count));
+    TRY(ALLOCATE(ctx, found->span, (size_t)f.count * RAYS));
+    parallel(ctx, (f.count + FANS - 1) / FANS, cast_fans, &f);
+    for (int32_t i = 0; i < f.count; i++)
+        for (int k = 0; k < RAYS; k++)
+            if (f.way[i][k].length_mm > 0) found->span[found->count++] = f.way[i][k];
+    TRY(step(ctx, "reinforce", 0));
 done:
+    arena_rewind(ctx, mark);
     if (status != JALI_OK) {
         release(ctx, found->span);
         *found = (spans){0};
     }
-    release(ctx, done_with);
     return status;
 }

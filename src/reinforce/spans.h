@@ -31,7 +31,6 @@ typedef struct span {
 
 typedef struct spans {
     int32_t count;
-    size_t capacity;
     span *span; // [count]
 } spans;
 

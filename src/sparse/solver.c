@@ -81,6 +81,11 @@ bool solver_leads(void)
     return true;
 }
 
+bool solver_serves_threads(void)
+{
+    return true;
+}
+
 void solver_share(int32_t node_count, int32_t *from, int32_t *to)
 {
     *from = 0;

@@ -25,6 +25,9 @@ const char *solver_name(void);
 /// Of several processes, the one that writes and speaks.
 bool solver_leads(void);
 
+/// Whether two threads may each have a solver at work. Processes that share theirs must all ask in one order.
+bool solver_serves_threads(void);
+
 /// Which nodes this process assembles: from .. to-1.
 void solver_share(int32_t node_count, int32_t *from, int32_t *to);
 

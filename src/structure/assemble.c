@@ -44,6 +44,7 @@ static jali_status list_triangles(jali_context *ctx, assembly *a)
     jali_status status;
     const jali_sheet *sheet = a->s->sheet;
     const int32_t *place = a->s->place;
+    solver_share(sheet->node_count, &a->from, &a->to);
     TRY(ARENA(ctx, a->first, sheet->node_count + 2));
     TRY(ARENA(ctx, a->at, 3 * (size_t)sheet->triangle_count));
     memset(a->first, 0, ((size_t)sheet->node_count + 2) * sizeof *a->first);
@@ -206,13 +207,12 @@ static jali_status factor(jali_context *ctx, structure *s)
                 place[2]);
 }
 
-static jali_status assemble(jali_context *ctx, assembly *a)
+static jali_status fill_rows(jali_context *ctx, void *of_assembly)
 {
     jali_status status;
+    assembly *a = of_assembly;
     TRY(step(ctx, "assemble", 0));
-    solver_share(a->s->sheet->node_count, &a->from, &a->to);
     parallel(ctx, (a->to - a->from + RUN - 1) / RUN, assemble_run, a);
-    TRY(solver_agree(ctx, resists(ctx, a)));
     TRY(step(ctx, "assemble", 1));
 done:
     return status;
@@ -230,9 +230,10 @@ static void choose_unknowns(structure *s, const uint8_t *held)
         }
 }
 
-static jali_status open_solver(jali_context *ctx, structure *s)
+static jali_status open_solver(jali_context *ctx, void *of_structure)
 {
     jali_status status;
+    structure *s = of_structure;
     arena_mark mark = arena_here(ctx);
     double(*place)[3];
     TRY(ARENA(ctx, place, s->sheet->node_count));
@@ -260,9 +261,9 @@ jali_status structure_create(jali_context *ctx, const jali_sheet *sheet, const f
     for (int32_t p = 0; p < sheet->node_count; p++) s->place[s->node[p]] = p;
     TRY(list_triangles(ctx, &a));
     TRY(lay_pattern(ctx, &a));
-    TRY(assemble(ctx, &a));
+    TRY(do_both(ctx, open_solver, s, fill_rows, &a)); // the order goes by the pattern alone
+    TRY(solver_agree(ctx, resists(ctx, &a)));
     arena_rewind(ctx, mark); // before the factor takes its memory
-    TRY(open_solver(ctx, s));
     TRY(factor(ctx, s));
 done:
     arena_rewind(ctx, mark);
@@ -276,7 +277,8 @@ jali_status structure_refactor(jali_context *ctx, structure *s)
     arena_mark mark = arena_here(ctx);
     assembly a = {.s = s};
     TRY(list_triangles(ctx, &a));
-    TRY(assemble(ctx, &a));
+    TRY(fill_rows(ctx, &a));
+    TRY(solver_agree(ctx, resists(ctx, &a)));
     arena_rewind(ctx, mark);
     TRY(factor(ctx, s));
 done:

@@ -120,21 +120,18 @@ done:
 
 // Put what was known and what is new in one matrix; entries between old and new come from the new columns.
 static void merge(const attachments *a, int32_t rank, const int32_t *row, int32_t fresh,
-                  const int32_t *fresh_row, const double *column, double *f)
+                  const int32_t *fresh_row, int32_t (*at)[2], const double *column, double *f)
 {
-    for (int32_t r = 0; r < rank; r++)
-        for (int32_t c = 0; c < rank; c++) {
-            int32_t old_r = index_of(a->rank, a->row, row[r]), old_c = index_of(a->rank, a->row, row[c]);
-            size_t new_c = (size_t)index_of(fresh, fresh_row, row[c]), new_r = 0;
-            if (old_r >= 0 && old_c >= 0) {
-                f[(size_t)r * (size_t)rank + (size_t)c] =
-                    a->f[(size_t)old_r * (size_t)a->rank + (size_t)old_c];
-                continue;
-            }
-            if (old_c >= 0) new_r = (size_t)index_of(fresh, fresh_row, row[r]);
-            f[(size_t)r * (size_t)rank + (size_t)c] = old_c < 0 ? column[new_c * (size_t)rank + (size_t)r]
-                                                                : column[new_r * (size_t)rank + (size_t)c];
-        }
+    size_t n = (size_t)rank, old = (size_t)a->rank;
+    for (int32_t r = 0; r < rank; r++) {
+        at[r][0] = index_of(a->rank, a->row, row[r]);
+        at[r][1] = index_of(fresh, fresh_row, row[r]);
+    }
+    for (size_t r = 0; r < n; r++)
+        for (size_t c = 0; c < n; c++)
+            f[r * n + c] = at[c][1] >= 0   ? column[(size_t)at[c][1] * n + r]
+                           : at[r][1] >= 0 ? column[(size_t)at[r][1] * n + c]
+                                           : a->f[(size_t)at[r][0] * old + (size_t)at[c][0]];
 }
 
 // Bring F up to the bridges that are there.
@@ -142,7 +139,7 @@ static jali_status extend(jali_context *ctx, attachments *a)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    int32_t fresh, *fresh_row, *row = NULL;
+    int32_t fresh, *fresh_row, (*at)[2], *row = NULL;
     double *column, *f = NULL;
     TRY(new_rows(ctx, a, &fresh, &fresh_row));
     if (fresh == 0) goto done;
@@ -150,11 +147,12 @@ static jali_status extend(jali_context *ctx, attachments *a)
     TRY(ALLOCATE(ctx, row, rank));
     TRY(ALLOCATE(ctx, f, (size_t)rank * (size_t)rank));
     TRY(ARENA(ctx, column, (size_t)rank * (size_t)fresh));
+    TRY(ARENA(ctx, at, rank));
     if (a->rank > 0) memcpy(row, a->row, (size_t)a->rank * sizeof *row);
     memcpy(row + a->rank, fresh_row, (size_t)fresh * sizeof *row);
     sort_rows(rank, row);
     TRY(solver_inverse(ctx, a->s->solver, rank, row, fresh, fresh_row, column));
-    merge(a, rank, row, fresh, fresh_row, column, f);
+    merge(a, rank, row, fresh, fresh_row, at, column, f);
     release(ctx, a->row);
     release(ctx, a->f);
     a->row = row;
@@ -169,28 +167,47 @@ done:
     return status;
 }
 
-// M = I + F S: a bridge's columns of F, times its S, added to its columns of M.
+// M = I + F S by bands of rows.
+typedef struct banding {
+    const attachments *a;
+    size_t most;           // rank of a bridge
+    double *felt, *pulled; // [rank][most]
+    double *matrix;
+} banding;
+
+enum { BAND = 64 };
+
+// A bridge's columns of F, times its S, are added to its columns of M.
+static void fill_band(void *shared, int32_t band)
+{
+    const banding *b = shared;
+    const attachments *a = b->a;
+    size_t n = (size_t)a->rank, from = (size_t)band * BAND, to = MIN(from + BAND, n);
+    double *felt = b->felt + from * b->most, *pulled = b->pulled + from * b->most;
+    memset(b->matrix + from * n, 0, (to - from) * n * sizeof *b->matrix);
+    for (size_t r = from; r < to; r++) b->matrix[r * n + r] = 1;
+    for (size_t i = 0; i < a->count; i++) {
+        const condensed *c = &a->bridge[i];
+        size_t rank = (size_t)c->rank;
+        for (size_t r = from; r < to; r++)
+            for (size_t k = 0; k < rank; k++) felt[(r - from) * rank + k] = a->f[r * n + (size_t)c->at[k]];
+        memset(pulled, 0, (to - from) * rank * sizeof *pulled);
+        add_product((int32_t)(to - from), c->rank, c->rank, felt, rank, c->stiffness, rank, pulled, rank);
+        for (size_t r = from; r < to; r++)
+            for (size_t k = 0; k < rank; k++)
+                b->matrix[r * n + (size_t)c->at[k]] += pulled[(r - from) * rank + k];
+    }
+}
+
 static jali_status fill_coupling(jali_context *ctx, const attachments *a, double *matrix)
 {
     jali_status status;
     arena_mark mark = arena_here(ctx);
-    size_t n = (size_t)a->rank, most = 0;
-    double *felt, *pulled;
-    for (size_t i = 0; i < a->count; i++) most = MAX(most, (size_t)a->bridge[i].rank);
-    TRY(ARENA(ctx, felt, n * most));
-    TRY(ARENA(ctx, pulled, n * most));
-    memset(matrix, 0, n * n * sizeof *matrix);
-    for (size_t r = 0; r < n; r++) matrix[r * n + r] = 1;
-    for (size_t i = 0; i < a->count; i++) {
-        const condensed *c = &a->bridge[i];
-        size_t rank = (size_t)c->rank;
-        for (size_t r = 0; r < n; r++)
-            for (size_t k = 0; k < rank; k++) felt[r * rank + k] = a->f[r * n + (size_t)c->at[k]];
-        memset(pulled, 0, n * rank * sizeof *pulled);
-        add_product(a->rank, c->rank, c->rank, felt, rank, c->stiffness, rank, pulled, rank);
-        for (size_t r = 0; r < n; r++)
-            for (size_t k = 0; k < rank; k++) matrix[r * n + (size_t)c->at[k]] += pulled[r * rank + k];
-    }
+    banding b = {.a = a, .matrix = matrix};
+    for (size_t i = 0; i < a->count; i++) b.most = MAX(b.most, (size_t)a->bridge[i].rank);
+    TRY(ARENA(ctx, b.felt, (size_t)a->rank * b.most));
+    TRY(ARENA(ctx, b.pulled, (size_t)a->rank * b.most));
+    parallel(ctx, (a->rank + BAND - 1) / BAND, fill_band, &b);
 done:
     arena_rewind(ctx, mark);
     return status;
