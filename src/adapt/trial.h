@@ -38,7 +38,7 @@ typedef struct stamping {
     int32_t reach, fits_reach; // how far a change reaches, and how far away it changes which discs fit
     int32_t pass, band_count;
     jali_stamp_report *band; // [band_count]
-    atomic_bool *stamped;    // [band_count] in this pass
+    atomic_int *chunks_done; // [band_count] in this pass
     widths w;
 } stamping;
 

@@ -53,7 +53,7 @@ static foresight *foresight_of(ahead *a, int32_t root)
 static void search_one(void *shared, int32_t index)
 {
     ahead *a = shared;
-    foresight *f = &a->each[a->asked[index]];
+    foresight *f = &a->each[a->asked[a->asked_count - 1 - index]];
     f->found = nearest_near(a->ctx, a->solid, a->p, f->root, a->metric, &f->s, &f->bridge);
 }
 

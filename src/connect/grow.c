@@ -9,116 +9,112 @@
 
 enum { FIRST_JUMP_PX = 8, BAND_WORDS = 1 << 14 }; // of a window, for one thread at a time
 
-// A step over the whole window as one array; returns whether it meets pixels of the picture that are not the
-// part's. What leaks into the border words is wiped after it.
-VECTORISED static bool grow_all(const uint64_t *before, const uint64_t *picture, uint64_t *after,
-                                int64_t pitch, int64_t n, bool square)
+// What a pass makes of the words i of `a`, the picture's beside them; what leaks into the border is wiped
+// after it. Those that look return whether `out` has pixels of the picture that `before` has not.
+
+// A step; `a` is what was before.
+VECTORISED static bool grow_words(const uint64_t *a, int64_t pitch, bool square, const uint64_t *picture,
+                                  uint64_t *out, int64_t n)
 {
     uint64_t met = 0;
-    const uint64_t *above = before - pitch, *below = before + pitch;
+    const uint64_t *above = a - pitch, *below = a + pitch;
     if (square)
         for (int64_t i = 0; i < n; i++) {
-            uint64_t here = above[i] | before[i] | below[i];
-            uint64_t left = above[i - 1] | before[i - 1] | below[i - 1],
-                     right = above[i + 1] | before[i + 1] | below[i + 1];
-            after[i] = here | here << 1 | here >> 1 | left >> 63 | right << 63;
-            met |= after[i] & ~before[i] & picture[i];
+            uint64_t here = above[i] | a[i] | below[i];
+            uint64_t left = above[i - 1] | a[i - 1] | below[i - 1],
+                     right = above[i + 1] | a[i + 1] | below[i + 1];
+            out[i] = here | here << 1 | here >> 1 | left >> 63 | right << 63;
+            met |= out[i] & ~a[i] & picture[i];
         }
     else
         for (int64_t i = 0; i < n; i++) {
-            uint64_t here = before[i];
-            after[i] = above[i] | below[i] | here | here << 1 | here >> 1 | before[i - 1] >> 63 |
-                       before[i + 1] << 63;
-            met |= after[i] & ~here & picture[i];
+            uint64_t here = a[i];
+            out[i] = above[i] | below[i] | here | here << 1 | here >> 1 | a[i - 1] >> 63 | a[i + 1] << 63;
+            met |= out[i] & ~here & picture[i];
         }
     return met != 0;
 }
 
-// out = a, a moved by `px` (1 .. 63) to both sides and, for a cross, the rows above and below.
-VECTORISED static void spread_row(const uint64_t *a, const uint64_t *above, const uint64_t *below,
-                                  uint64_t *out, int64_t n, int32_t px)
-{
-    int32_t rest = 64 - px;
-    for (int64_t i = 0; i < n; i++)
-        out[i] = a[i] | a[i] << px | a[i - 1] >> rest | a[i] >> px | a[i + 1] << rest | above[i] | below[i];
-}
-
-VECTORISED static void join_row(const uint64_t *a, const uint64_t *above, const uint64_t *below,
-                                uint64_t *out, int64_t n)
-{
-    for (int64_t i = 0; i < n; i++) out[i] = a[i] | above[i] | below[i];
-}
-
-VECTORISED static bool meets(const uint64_t *before, const uint64_t *picture, const uint64_t *after,
-                             int64_t n)
+// The five copies of a cross's ball, px (1 .. 63) apart; `away` words are px rows.
+VECTORISED static bool cross_words(const uint64_t *a, int64_t away, int32_t px, const uint64_t *before,
+                                   const uint64_t *picture, uint64_t *out, int64_t n)
 {
     uint64_t met = 0;
-    for (int64_t i = 0; i < n; i++) met |= after[i] & ~before[i] & picture[i];
+    int32_t rest = 64 - px;
+    const uint64_t *above = a - away, *below = a + away;
+    for (int64_t i = 0; i < n; i++) {
+        uint64_t here = a[i];
+        out[i] = here | here << px | here >> px | a[i - 1] >> rest | a[i + 1] << rest | above[i] | below[i];
+        met |= out[i] & ~before[i] & picture[i];
+    }
     return met != 0;
 }
 
-// Row y, or the empty border row beyond the window.
-static const uint64_t *row_or_nothing(const window *w, uint64_t *words, int32_t y)
+// The three copies of a square's ball along its row ...
+VECTORISED static void spread_words(const uint64_t *a, int32_t px, uint64_t *out, int64_t n)
 {
-    return row_of(w, words, y < 0 || y >= w->rows ? -1 : y);
+    int32_t rest = 64 - px;
+    for (int64_t i = 0; i < n; i++)
+        out[i] = a[i] | a[i] << px | a[i] >> px | a[i - 1] >> rest | a[i + 1] << rest;
 }
+
+// ... and along its column.
+VECTORISED static bool stack_words(const uint64_t *a, int64_t away, const uint64_t *before,
+                                   const uint64_t *picture, uint64_t *out, int64_t n)
+{
+    uint64_t met = 0;
+    const uint64_t *above = a - away, *below = a + away;
+    for (int64_t i = 0; i < n; i++) {
+        out[i] = a[i] | above[i] | below[i];
+        met |= out[i] & ~before[i] & picture[i];
+    }
+    return met != 0;
+}
+
+typedef enum pass_kind { GROW_CROSS, GROW_SQUARE, JUMP_CROSS, SPREAD_SQUARE, STACK_SQUARE } pass_kind;
 
 // A pass over the rows of a window: side by side where it is large, when nothing else is.
 typedef struct pass {
     const window *w;
-    uint64_t *from, *to; // planes
-    const uint64_t *picture;
+    pass_kind kind;
     int32_t px; // how far
-    bool square;
-    atomic_bool met;
-    void (*rows)(struct pass *p, int32_t y0, int32_t y1);
+    const uint64_t *from, *before, *picture;
+    uint64_t *to;
     int32_t band_rows;
+    atomic_bool met;
 } pass;
+
+static bool pass_words(const pass *p, int64_t first, int64_t n)
+{
+    int64_t pitch = p->w->words + 2, away = p->px * pitch;
+    const uint64_t *from = p->from + first, *before = p->before + first, *picture = p->picture + first;
+    uint64_t *to = p->to + first;
+    switch (p->kind) {
+    case GROW_CROSS:
+    case GROW_SQUARE: return grow_words(from, pitch, p->kind == GROW_SQUARE, picture, to, n);
+    case JUMP_CROSS: return cross_words(from, away, p->px, before, picture, to, n);
+    case SPREAD_SQUARE: spread_words(from, p->px, to, n); return false;
+    case STACK_SQUARE: return stack_words(from, away, before, picture, to, n);
+    }
+    return false;
+}
 
 static void pass_band(void *shared, int32_t band)
 {
     pass *p = shared;
-    p->rows(p, band * p->band_rows, MIN((band + 1) * p->band_rows, p->w->rows));
+    const window *w = p->w;
+    int32_t y0 = band * p->band_rows, y1 = MIN(y0 + p->band_rows, w->rows);
+    int64_t pitch = w->words + 2, first = (y0 + w->border) * pitch + 1;
+    if (pass_words(p, first, (y1 - y0) * pitch - 2)) p->met = true;
+    uint64_t *row = p->to + first;
+    for (int32_t y = y0; y < y1; y++, row += pitch) row[-1] = row[w->words] = 0;
 }
 
-// Whether another part was met, where the pass looks for that.
-static bool run_pass(jali_context *ctx, pass p, void (*rows)(pass *p, int32_t y0, int32_t y1))
+static bool run_pass(jali_context *ctx, pass p)
 {
-    p.rows = rows;
     p.band_rows = MAX(BAND_WORDS / (p.w->words + 2), 1);
     parallel(ctx, (p.w->rows + p.band_rows - 1) / p.band_rows, pass_band, &p);
     return p.met;
-}
-
-static void grow_rows(pass *p, int32_t y0, int32_t y1)
-{
-    int64_t pitch = p->w->words + 2, first = (y0 + 1) * pitch + 1, n = (y1 - y0) * pitch - 2;
-    if (grow_all(p->from + first, p->picture + first, p->to + first, pitch, n, p->square)) p->met = true;
-    for (int32_t y = y0; y < y1; y++) row_of(p->w, p->to, y)[-1] = row_of(p->w, p->to, y)[p->w->words] = 0;
-}
-
-static void spread_rows(pass *p, int32_t y0, int32_t y1)
-{
-    const window *w = p->w;
-    const uint64_t *nothing = row_of(w, p->from, -1);
-    for (int32_t y = y0; y < y1; y++)
-        spread_row(row_of(w, p->from, y), p->square ? nothing : row_or_nothing(w, p->from, y - p->px),
-                   p->square ? nothing : row_or_nothing(w, p->from, y + p->px), row_of(w, p->to, y), w->words,
-                   p->px);
-}
-
-static void join_rows(pass *p, int32_t y0, int32_t y1)
-{
-    const window *w = p->w;
-    for (int32_t y = y0; y < y1; y++)
-        join_row(row_of(w, p->from, y), row_or_nothing(w, p->from, y - p->px),
-                 row_or_nothing(w, p->from, y + p->px), row_of(w, p->to, y), w->words);
-}
-
-static void meet_rows(pass *p, int32_t y0, int32_t y1)
-{
-    int64_t pitch = p->w->words + 2, first = (y0 + 1) * pitch;
-    if (meets(p->from + first, p->picture + first, p->to + first, (y1 - y0) * pitch)) p->met = true;
 }
 
 // Square steps among the first k; the others are crosses.
@@ -144,17 +140,22 @@ int32_t jump_length(jali_metric metric, int32_t k, int32_t most)
 bool take_steps(jali_context *ctx, const window *w, search *s, jali_metric metric, int32_t k, int32_t jump)
 {
     int32_t squares = square_steps(metric, k + jump) - square_steps(metric, k), crosses = jump - squares;
-    pass p = {.w = w, .from = s->grown, .to = s->next, .picture = s->picture, .square = squares > 0};
-    if (jump == 1) return run_pass(ctx, p, grow_rows);
-    uint64_t *crossed = s->grown;
+    pass p = {.w = w, .px = 1, .from = s->grown, .before = s->grown, .picture = s->picture, .to = s->next};
+    if (jump == 1) {
+        p.kind = squares > 0 ? GROW_SQUARE : GROW_CROSS;
+        return run_pass(ctx, p);
+    }
+    bool met = false;
     if (crosses > 0) {
-        run_pass(ctx, (pass){.w = w, .from = crossed, .to = s->next, .px = crosses}, spread_rows);
-        crossed = s->next;
+        p.kind = JUMP_CROSS, p.px = crosses;
+        met = run_pass(ctx, p);
+        p.from = s->next;
     }
-    if (squares > 0) {
-        run_pass(ctx, (pass){.w = w, .from = crossed, .to = s->spare, .px = squares, .square = true},
-                 spread_rows);
-        run_pass(ctx, (pass){.w = w, .from = s->spare, .to = s->next, .px = squares}, join_rows);
+    if (squares > 0 && !met) {
+        p.kind = SPREAD_SQUARE, p.px = squares, p.to = s->spare;
+        run_pass(ctx, p);
+        p.kind = STACK_SQUARE, p.from = s->spare, p.to = s->next;
+        met = run_pass(ctx, p);
     }
-    return run_pass(ctx, p, meet_rows);
+    return met;
 }

@@ -16,10 +16,11 @@
 enum { FIRST_RIM_PX = 14, RIM_TIMES = 4, MOST_NEAR_RIM_PX = 224 };
 enum { MOST_NEAR_WORDS = 1 << 13 };
 
-// Cut off MOST_JUMP_PX beyond the picture: a jump can overshoot the part by that much and come back.
+// Cut off MOST_JUMP_PX beyond the picture: a jump can overshoot the part by that much and come back. One that
+// ends within the rim is no longer than half of it (grow.c).
 static window window_around(const jali_bitmap *solid, const int32_t box[4], int32_t rim)
 {
-    window w;
+    window w = {.border = MIN(rim / 2 + 1, MOST_JUMP_PX)};
     w.x0 = (MAX(box[0] - rim, -MOST_JUMP_PX) & ~63);
     w.y0 = MAX(box[1] - rim, -MOST_JUMP_PX);
     w.words = (MIN(box[2] + rim, solid->width_px + MOST_JUMP_PX) - w.x0 + 63) / 64;
@@ -29,10 +30,10 @@ static window window_around(const jali_bitmap *solid, const int32_t box[4], int3
 
 static void draw_part(const parts *p, int32_t root, const window *w, uint64_t *words)
 {
-    memset(words, 0, (size_t)(w->words + 2) * (size_t)(w->rows + 2) * sizeof *words);
-    jali_bitmap view = {0, 0, w->words + 2, words};
+    memset(words, 0, (size_t)word_count(w) * sizeof *words);
+    jali_bitmap view = {0, 0, w->words + 2, row_of(w, words, 0) - 1};
     for (int32_t i = p->head[root]; i >= 0; i = p->run[i].next)
-        paint_run(&view, p->run[i].y - w->y0 + 1, p->run[i].x0 - w->x0 + 64, p->run[i].x1 - w->x0 + 64, true);
+        paint_run(&view, p->run[i].y - w->y0, p->run[i].x0 - w->x0 + 64, p->run[i].x1 - w->x0 + 64, true);
 }
 
 // The picture's pixels of the window; nothing in the border.
@@ -151,7 +152,7 @@ static window first_window(const jali_bitmap *solid, const parts *p, int32_t roo
 static bool meets_within(jali_context *ctx, const window *w, int32_t limit, jali_metric metric, search *s)
 {
     for (int32_t most = limit; s->steps < limit && !stopping(ctx);) {
-        int32_t jump = jump_length(metric, s->steps, MIN(most, limit - s->steps));
+        int32_t jump = jump_length(metric, s->steps, MIN(MIN(most, limit - s->steps), w->border));
         if (!take_steps(ctx, w, s, metric, s->steps, jump)) {
             swap_grown(s);
             s->steps += jump;
