@@ -18,6 +18,7 @@ void ahead_free(ahead *a)
 {
     for (int32_t i = 0; i < AHEAD; i++) search_free(a->ctx, &a->each[i].s);
     search_free(a->ctx, &a->own);
+    slices_free(a->ctx, &a->large);
 }
 
 static bool is_current(const foresight *f, const parts *p)
@@ -39,7 +40,7 @@ static bool comes_near(const jali_bridges *laid, int32_t bridge, const int32_t b
 static bool still_holds(const foresight *f, const parts *p, int32_t root, const jali_bridges *laid)
 {
     for (int32_t i = f->laid; i < laid->count; i++)
-        if (comes_near(laid, i, p->box[root], f->s.steps)) return false;
+        if (comes_near(laid, i, p->box[root], f->s.g.steps)) return false;
     return true;
 }
 
@@ -60,6 +61,7 @@ static void search_one(void *shared, int32_t index)
 // Put the part into a place that is free.
 static jali_status ask_for(ahead *a, int32_t root, int32_t laid, int32_t *place)
 {
+    if (slices_of(a->ctx, a->p, root) > 1) return JALI_OK; // work for all threads
     while (is_current(&a->each[*place], a->p)) ++*place;
     foresight *f = &a->each[*place];
     jali_status status = make_room_near(a->ctx, a->solid, a->p, root, &f->s);
@@ -98,6 +100,8 @@ static jali_status search_side_by_side(ahead *a, int32_t root, int32_t laid)
 jali_status nearest_in_turn(ahead *a, int32_t root, const jali_bridges *laid, jali_bridge *bridge)
 {
     jali_status status = JALI_OK;
+    if (slices_of(a->ctx, a->p, root) > 1)
+        return nearest_by_slices(a->ctx, a->solid, a->p, root, a->metric, &a->large, bridge);
     if (threads_of(a->ctx) > 1 && !foresight_of(a, root)) TRY(search_side_by_side(a, root, laid->count));
     foresight *f = foresight_of(a, root);
     if (f) f->root = -1;

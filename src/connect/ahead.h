@@ -2,7 +2,7 @@
 #ifndef CONNECT_AHEAD_H
 #define CONNECT_AHEAD_H
 
-#include "connect/search.h"
+#include "connect/slices.h"
 
 enum { AHEAD = 16 };
 
@@ -18,6 +18,7 @@ typedef struct foresight {
 typedef struct ahead {
     foresight each[AHEAD];
     search own;                        // of a part that was not foreseen
+    slices large;                      // of one that is searched for in slices
     int32_t asked[AHEAD], asked_count; // those that are searched for now
     jali_context *ctx;
     const jali_bitmap *solid;

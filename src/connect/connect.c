@@ -38,12 +38,13 @@ static int32_t join_with(joining *j, int32_t root, int32_t x, int32_t y)
 }
 
 // White neighbours of a fresh bridge pixel that belong to other parts are joined with it: at the far end the
-// bridge can touch several parts at once.
-static int32_t unite_neighbours(joining *j, int32_t root, int32_t x, int32_t y)
+// bridge can touch several parts at once. The pixel before it is its own part's.
+static int32_t unite_neighbours(joining *j, int32_t root, int32_t x, int32_t y, const int32_t before[2])
 {
     static const int32_t beside[4][2] = {{0, -1}, {-1, 0}, {1, 0}, {0, 1}};
     for (int32_t k = 0; k < 4; k++) {
         int32_t u = x + beside[k][0], v = y + beside[k][1];
+        if (u == before[0] && v == before[1]) continue;
         if (u < 0 || v < 0 || u >= j->solid->width_px || v >= j->solid->height_px) continue;
         if (jali_bitmap_get(j->solid, u, v)) root = join_with(j, root, u, v);
     }
@@ -51,7 +52,7 @@ static int32_t unite_neighbours(joining *j, int32_t root, int32_t x, int32_t y)
 }
 
 static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32_t label, int32_t x,
-                             int32_t y)
+                             int32_t y, const int32_t before[2])
 {
     if (jali_bitmap_get(j->solid, x, y)) {
         *root = join_with(j, *root, x, y);
@@ -61,7 +62,7 @@ static jali_status lay_pixel(jali_context *ctx, joining *j, int32_t *root, int32
     if (status != JALI_OK) return status;
     jali_bitmap_set(j->solid, x, y, true);
     j->laid.pixels++;
-    *root = unite_neighbours(j, *root, x, y);
+    *root = unite_neighbours(j, *root, x, y, before);
     return JALI_OK;
 }
 
@@ -70,9 +71,15 @@ static jali_status lay_path(jali_context *ctx, joining *j, int32_t root, int32_t
 {
     jali_status status;
     int32_t from[2], to[2], label = j->laid.bridge[bridge].part[0];
+    const int32_t *first = j->laid.bridge[bridge].from;
+    int32_t before[2] = {first[0], first[1]};
     for (int32_t leg = 0; jali_bridge_leg(&j->laid, bridge, leg, from, to); leg++) {
         line_walk walk = walk_line(from, to);
-        while (walk_on(&walk)) TRY(lay_pixel(ctx, j, &root, label, walk.x, walk.y));
+        while (walk_on(&walk)) {
+            TRY(lay_pixel(ctx, j, &root, label, walk.x, walk.y, before));
+            before[0] = walk.x;
+            before[1] = walk.y;
+        }
     }
     TRY(queue_part(ctx, &j->p, root));
 done:

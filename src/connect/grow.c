@@ -1,16 +1,47 @@
-// Dilations of a window, 512 pixels at a time: a step, or many at once.
+// A part grows in a window, 512 pixels at a time, until it meets another.
 //
-// Method:  a ball of radius a and its copies b <= a apart make the ball of radius a + b. Large windows are
-//          passed over by several threads, each with rows of its own.
+// Method:  a step dilates by one pixel (a cross; for the octagonal metric 5 of 12 steps are squares, which
+//          makes a nearly regular octagon) and compares with the picture. After 8 steps many are taken at
+//          once: a ball of radius a and its copies b <= a apart make the ball of radius a + b. Where that
+//          meets a part the jump is halved, so a distance d costs log d passes and the answer is exact.
+// Cost:    0.1 ns a pass for 8 words while the planes fit the first caches.
+// Dead end: a breadth-first search over pixels visits the same places at 5 to 10 ns a pixel; this takes
+//          0.1 to 0.3.
 #include "connect/grow.h"
 #include "base/base.h"
 
-#include <stdatomic.h>
+enum { FIRST_JUMP_PX = 8 };
 
-enum { FIRST_JUMP_PX = 8, BAND_WORDS = 1 << 14 }; // of a window, for one thread at a time
+jali_status make_planes(jali_context *ctx, const window *w, growing *g)
+{
+    jali_status status;
+    TRY(make_plane(ctx, w, &g->picture));
+    TRY(make_plane(ctx, w, &g->grown));
+    TRY(make_plane(ctx, w, &g->next));
+    TRY(make_plane(ctx, w, &g->spare));
+done:
+    return status;
+}
 
-// What a pass makes of the words i of `a`, the picture's beside them; what leaks into the border is wiped
-// after it. Those that look return whether `out` has pixels of the picture that `before` has not.
+jali_status make_room(jali_context *ctx, const window *w, growing *g)
+{
+    jali_status status = make_planes(ctx, w, g);
+    if (status != JALI_OK) return status;
+    clear_border(w, &g->next);
+    clear_border(w, &g->spare);
+    return JALI_OK;
+}
+
+void growing_free(jali_context *ctx, growing *g)
+{
+    plane_free(ctx, &g->picture);
+    plane_free(ctx, &g->grown);
+    plane_free(ctx, &g->next);
+    plane_free(ctx, &g->spare);
+}
+
+// What a pass makes of the words i of `a`; what leaks into the words beside the rows is wiped after it. Those
+// that look return whether `out` has pixels of the picture that `before` has not.
 
 // A step; `a` is what was before.
 VECTORISED static bool grow_words(const uint64_t *a, int64_t pitch, bool square, const uint64_t *picture,
@@ -35,7 +66,7 @@ VECTORISED static bool grow_words(const uint64_t *a, int64_t pitch, bool square,
     return met != 0;
 }
 
-// The five copies of a cross's ball, px (1 .. 63) apart; `away` words are px rows.
+// The five copies of a ball of crosses, px (1 .. 63) apart; px rows are `away` words.
 VECTORISED static bool cross_words(const uint64_t *a, int64_t away, int32_t px, const uint64_t *before,
                                    const uint64_t *picture, uint64_t *out, int64_t n)
 {
@@ -50,7 +81,7 @@ VECTORISED static bool cross_words(const uint64_t *a, int64_t away, int32_t px, 
     return met != 0;
 }
 
-// The three copies of a square's ball along its row ...
+// The three copies of a ball of squares along its row ...
 VECTORISED static void spread_words(const uint64_t *a, int32_t px, uint64_t *out, int64_t n)
 {
     int32_t rest = 64 - px;
@@ -71,50 +102,43 @@ VECTORISED static bool stack_words(const uint64_t *a, int64_t away, const uint64
     return met != 0;
 }
 
-typedef enum pass_kind { GROW_CROSS, GROW_SQUARE, JUMP_CROSS, SPREAD_SQUARE, STACK_SQUARE } pass_kind;
-
-// A pass over the rows of a window: side by side where it is large, when nothing else is.
-typedef struct pass {
-    const window *w;
-    pass_kind kind;
-    int32_t px; // how far
-    const uint64_t *from, *before, *picture;
-    uint64_t *to;
-    int32_t band_rows;
-    atomic_bool met;
-} pass;
-
-static bool pass_words(const pass *p, int64_t first, int64_t n)
+// From the first word of the first row to the last one of the last.
+static int64_t pass_length(const window *w)
 {
-    int64_t pitch = p->w->words + 2, away = p->px * pitch;
-    const uint64_t *from = p->from + first, *before = p->before + first, *picture = p->picture + first;
-    uint64_t *to = p->to + first;
-    switch (p->kind) {
-    case GROW_CROSS:
-    case GROW_SQUARE: return grow_words(from, pitch, p->kind == GROW_SQUARE, picture, to, n);
-    case JUMP_CROSS: return cross_words(from, away, p->px, before, picture, to, n);
-    case SPREAD_SQUARE: spread_words(from, p->px, to, n); return false;
-    case STACK_SQUARE: return stack_words(from, away, before, picture, to, n);
+    return w->rows * pitch_of(w) - 2;
+}
+
+static void wipe_beside_rows(const window *w, const plane *p)
+{
+    uint64_t *row = row_of(w, p, 0);
+    for (int32_t y = 0; y < w->rows; y++, row += pitch_of(w)) row[-1] = row[w->words] = 0;
+}
+
+// One step, from `grown` into `next`.
+static bool take_step(const window *w, bool square, growing *g)
+{
+    bool met = grow_words(row_of(w, &g->grown, 0), pitch_of(w), square, row_of(w, &g->picture, 0),
+                          row_of(w, &g->next, 0), pass_length(w));
+    wipe_beside_rows(w, &g->next);
+    return met;
+}
+
+// Many steps: a ball of crosses of radius a grows to a + px, px <= a, by the five copies of it px apart; one
+// of squares of radius b to b + px, px <= 2 b + 1, along rows, then along columns.
+static bool jump(const window *w, int32_t crosses, int32_t squares, growing *g)
+{
+    const uint64_t *before = row_of(w, &g->grown, 0), *picture = row_of(w, &g->picture, 0), *from = before;
+    uint64_t *next = row_of(w, &g->next, 0), *spare = row_of(w, &g->spare, 0);
+    int64_t pitch = pitch_of(w), n = pass_length(w);
+    if (crosses > 0) {
+        bool met = cross_words(from, crosses * pitch, crosses, before, picture, next, n);
+        wipe_beside_rows(w, &g->next);
+        if (met || squares == 0) return met;
+        from = next;
     }
-    return false;
-}
-
-static void pass_band(void *shared, int32_t band)
-{
-    pass *p = shared;
-    const window *w = p->w;
-    int32_t y0 = band * p->band_rows, y1 = MIN(y0 + p->band_rows, w->rows);
-    int64_t pitch = w->words + 2, first = (y0 + w->border) * pitch + 1;
-    if (pass_words(p, first, (y1 - y0) * pitch - 2)) p->met = true;
-    uint64_t *row = p->to + first;
-    for (int32_t y = y0; y < y1; y++, row += pitch) row[-1] = row[w->words] = 0;
-}
-
-static bool run_pass(jali_context *ctx, pass p)
-{
-    p.band_rows = MAX(BAND_WORDS / (p.w->words + 2), 1);
-    parallel(ctx, (p.w->rows + p.band_rows - 1) / p.band_rows, pass_band, &p);
-    return p.met;
+    spread_words(from, squares, spare, n);
+    wipe_beside_rows(w, &g->spare);
+    return stack_words(spare, squares * pitch, before, picture, next, n);
 }
 
 // Square steps among the first k; the others are crosses.
@@ -125,37 +149,68 @@ static int32_t square_steps(jali_metric metric, int32_t k)
 
 // How many steps can be taken at once after k: dilations commute, so the crosses come first, then the
 // squares.
-int32_t jump_length(jali_metric metric, int32_t k, int32_t most)
+static int32_t jump_length(jali_metric metric, int32_t k, int32_t most)
 {
     int32_t squares = square_steps(metric, k), crosses = k - squares;
-    for (int32_t jump = MIN(most, MOST_JUMP_PX); k >= FIRST_JUMP_PX && jump > 1; jump--) {
+    for (int32_t jump = most; k >= FIRST_JUMP_PX && jump > 1; jump--) {
         int32_t more_squares = square_steps(metric, k + jump) - squares;
         if (jump - more_squares <= crosses && more_squares <= 2 * squares + 1) return jump;
     }
     return 1;
 }
 
-// A ball of crosses of radius a grows to a + px, px <= a, by the five copies of it px apart; one of squares
-// of radius b to b + px, px <= 2 b + 1, along rows, then along columns.
-bool take_steps(jali_context *ctx, const window *w, search *s, jali_metric metric, int32_t k, int32_t jump)
+static bool take_steps(const window *w, jali_metric metric, int32_t steps, growing *g)
 {
-    int32_t squares = square_steps(metric, k + jump) - square_steps(metric, k), crosses = jump - squares;
-    pass p = {.w = w, .px = 1, .from = s->grown, .before = s->grown, .picture = s->picture, .to = s->next};
-    if (jump == 1) {
-        p.kind = squares > 0 ? GROW_SQUARE : GROW_CROSS;
-        return run_pass(ctx, p);
+    int32_t squares = square_steps(metric, g->steps + steps) - square_steps(metric, g->steps);
+    return steps == 1 ? take_step(w, squares > 0, g) : jump(w, steps - squares, squares, g);
+}
+
+bool grow_until_met(jali_context *ctx, const window *w, int32_t limit, jali_metric metric, growing *g)
+{
+    for (int32_t most = w->border; g->steps < limit && !stopping(ctx);) {
+        int32_t steps = jump_length(metric, g->steps, MIN(most, limit - g->steps));
+        if (!take_steps(w, metric, steps, g)) {
+            plane swap = g->grown;
+            g->grown = g->next;
+            g->next = swap;
+            g->steps += steps;
+        } else if (steps > 1) {
+            most = steps / 2; // a part is met within the jump: halve it
+        } else {
+            g->steps++;
+            return true;
+        }
     }
-    bool met = false;
-    if (crosses > 0) {
-        p.kind = JUMP_CROSS, p.px = crosses;
-        met = run_pass(ctx, p);
-        p.from = s->next;
-    }
-    if (squares > 0 && !met) {
-        p.kind = SPREAD_SQUARE, p.px = squares, p.to = s->spare;
-        run_pass(ctx, p);
-        p.kind = STACK_SQUARE, p.from = s->spare, p.to = s->next;
-        met = run_pass(ctx, p);
-    }
-    return met;
+    return false;
+}
+
+void first_met_pixel(const window *w, const growing *g, int32_t pixel[2])
+{
+    for (int32_t y = 0; y < w->rows; y++)
+        for (int32_t i = 0; i < w->words; i++) {
+            uint64_t met =
+                row_of(w, &g->next, y)[i] & ~row_of(w, &g->grown, y)[i] & row_of(w, &g->picture, y)[i];
+            if (!met) continue;
+            pixel[0] = w->x0 + i * 64 + __builtin_ctzll(met);
+            pixel[1] = w->y0 + y;
+            return;
+        }
+}
+
+// Both windows are cut off alike at the picture, so it is what would have grown in the wider one.
+jali_status widen(jali_context *ctx, const window *narrow, const window *wide, growing *g)
+{
+    jali_status status;
+    plane wider = {0};
+    TRY(make_plane(ctx, wide, &g->next));
+    clear_plane(wide, &g->next);
+    int64_t left = (narrow->x0 - wide->x0) / 64;
+    for (int32_t y = 0; y < narrow->rows; y++)
+        memcpy(row_of(wide, &g->next, y + narrow->y0 - wide->y0) + left, row_of(narrow, &g->grown, y),
+               (size_t)narrow->words * sizeof *wider.word);
+    wider = g->next;
+    g->next = g->grown;
+    g->grown = wider;
+done:
+    return status;
 }

@@ -2,31 +2,27 @@
 #ifndef CONNECT_GROW_H
 #define CONNECT_GROW_H
 
-#include "connect/search.h"
+#include "connect/window.h"
 
-enum { MOST_JUMP_PX = 63 };
+/// What grows, before and after a step, and the picture that it may meet. {0} is valid and empty.
+typedef struct growing {
+    plane picture, grown, next, spare;
+    int32_t steps; // so far
+} growing;
 
-/// What of a picture a search looks at. Its planes have a border, which stays black: a word on either side,
-/// and as many rows above and below as a jump is long, so that a pass is one loop over all words.
-typedef struct window {
-    int32_t x0, y0;      // upper left corner in the picture, x0 a multiple of 64
-    int32_t words, rows; // without the border
-    int32_t border;      // rows
-} window;
+/// Planes for a window, `grown` as it is where there is room for it.
+jali_status make_planes(jali_context *ctx, const window *w, growing *g);
+/// The same, and a black border for what is to grow.
+jali_status make_room(jali_context *ctx, const window *w, growing *g);
+void growing_free(jali_context *ctx, growing *g);
 
-static inline uint64_t *row_of(const window *w, uint64_t *words, int32_t y)
-{
-    return words + (int64_t)(y + w->border) * (w->words + 2) + 1;
-}
-
-static inline int64_t word_count(const window *w)
-{
-    return (int64_t)(w->words + 2) * (w->rows + 2 * w->border);
-}
-
-/// How many steps can be taken at once after the first k, `most` at most.
-int32_t jump_length(jali_metric metric, int32_t k, int32_t most);
-/// `jump` steps after the first k, from `grown` into `next`; returns whether they meet another part.
-bool take_steps(jali_context *ctx, const window *w, search *s, jali_metric metric, int32_t k, int32_t jump);
+/// Step on until pixels of the picture are met that the part did not have.
+///   in   limit   steps at most, in all; the planes' borders are black
+///   out  false: nothing is met, or the run was cancelled
+bool grow_until_met(jali_context *ctx, const window *w, int32_t limit, jali_metric metric, growing *g);
+/// The first pixel in raster order that the last step met.
+void first_met_pixel(const window *w, const growing *g, int32_t pixel[2]);
+/// What has grown goes on in a wider window around the same part.
+jali_status widen(jali_context *ctx, const window *narrow, const window *wide, growing *g);
 
 #endif

@@ -1,17 +1,17 @@
-// The nearest pixel of any other part. Internal to connect.
+// The nearest pixel of any other part, for a small one. Internal to connect.
 #ifndef CONNECT_SEARCH_H
 #define CONNECT_SEARCH_H
 
-#include "connect/parts.h"
-#include <jali/connect.h>
+#include "connect/grow.h"
 
-/// Scratch of the search: windows of the picture, of the part, of the part before and after a step.
+enum { FIRST_RIM_PX = 14, RIM_TIMES = 4 };
+
+/// Scratch of the search. {0} is valid and empty.
 typedef struct search {
-    uint64_t *picture, *own, *grown, *next, *spare; // [capacity] words each
-    size_t picture_capacity, own_capacity, grown_capacity, next_capacity, spare_capacity;
+    growing g;        // its steps: to what was found last
+    plane own;        // the part alone
     int32_t near_rim; // as far as nearest_near looks
     int32_t rim;      // of the window that it is in
-    int32_t steps;    // to what was found last
 } search;
 
 /// Find the white pixel outside the part `root` that is nearest to it, and the part's pixel nearest to that.
