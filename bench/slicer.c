@@ -112,7 +112,7 @@ static jali_status connected_plate(jali_context *ctx, const jali_bitmap *input,
     jali_chart chart = {0};
     TRY(jali_bitmap_create(ctx, input->width_px + 2 * MARGIN_PX, input->height_px + 2 * MARGIN_PX, &framed));
     fill(ctx, &framed, true);
-    paste(input, MARGIN_PX, MARGIN_PX, &framed);
+    paste(ctx, input, MARGIN_PX, MARGIN_PX, &framed);
     TRY(jali_connect(ctx, &framed, NULL, &framed, NULL));
     TRY(grey_of(ctx, &framed, MARGIN_PX, &grey));
     TRY(jali_place(ctx, &grey, 128, place, &chart, &drawing));
@@ -169,7 +169,7 @@ static jali_status grow_print(jali_context *ctx, const jali_reference *reference
                                 .recall = true};
     int32_t margin = (int32_t)(0.75 * FRAME_MM / picture_mm * picture->width_px);
     TRY(jali_bitmap_create(ctx, picture->width_px + 2 * margin, picture->height_px + 2 * margin, &part));
-    cut_out(&c->plate, (c->plate.width_px - part.width_px) / 2, (c->plate.height_px - part.height_px) / 2,
+    cut_out(ctx, &c->plate, (c->plate.width_px - part.width_px) / 2, (c->plate.height_px - part.height_px) / 2,
             &part);
     TRY(jali_predict(ctx, reference, &part, margin, true, &opt, grown));
 done:

@@ -138,7 +138,7 @@ jali_status without_margin(jali_context *ctx, const jali_bitmap *mask, int32_t m
     jali_status status =
         jali_bitmap_create(ctx, mask->width_px - 2 * margin, mask->height_px - 2 * margin, picture);
     if (status != JALI_OK) return status;
-    cut_out(mask, margin, margin, picture);
+    cut_out(ctx, mask, margin, margin, picture);
     return JALI_OK;
 }
 

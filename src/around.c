@@ -43,8 +43,8 @@ static jali_status lay_parts(jali_context *ctx, const jali_bitmap *part, int32_t
         int32_t first = wrapped((int64_t)x - origin, part->width_px);
         int32_t width = MIN(part->width_px - first, to - x);
         TRY(jali_bitmap_create(ctx, width, part->height_px, &piece));
-        cut_out(part, first, 0, &piece);
-        paste(&piece, x, 0, dst);
+        cut_out(ctx, part, first, 0, &piece);
+        paste(ctx, &piece, x, 0, dst);
         jali_bitmap_free(ctx, &piece);
         x += width;
     }
@@ -112,7 +112,7 @@ static jali_status take_part(jali_context *ctx, const strip *s, const jali_bitma
     jali_bitmap middle = {0};
     int32_t period = part->width_px;
     TRY(jali_bitmap_create(ctx, period, part->height_px, &middle));
-    cut_out(mask, s->chart.margin_px + halo, 0, &middle);
+    cut_out(ctx, mask, s->chart.margin_px + halo, 0, &middle);
     TRY(lay_parts(ctx, &middle, wrapped(shift, period), 0, period, part));
 done:
     jali_bitmap_free(ctx, &middle);
@@ -148,8 +148,8 @@ static jali_status fold_added(jali_context *ctx, const strip *s, const jali_bitm
         int32_t first = wrapped((int64_t)x - s->first, period), width = MIN(period - first, end - x);
         TRY(jali_bitmap_create(ctx, width, part->height_px, &piece));
         TRY(jali_bitmap_create(ctx, period, part->height_px, &all));
-        cut_out(&added, x, 0, &piece);
-        paste(&piece, first, 0, &all);
+        cut_out(ctx, &added, x, 0, &piece);
+        paste(ctx, &piece, first, 0, &all);
         combine(ctx, RULE_OR, part, &all, part);
         jali_bitmap_free(ctx, &piece);
         jali_bitmap_free(ctx, &all);
@@ -264,7 +264,7 @@ jali_status jali_optimise_around(jali_context *ctx, const jali_bitmap *drawing, 
         TRY(fail(ctx, JALI_BAD_VALUE, "%d columns cannot go around in %d equal parts", inner, parts));
     int32_t period = inner / parts, halo = parts > 1 ? period : (period + 1) / 2;
     TRY(jali_bitmap_create(ctx, period, drawing->height_px, &part));
-    cut_out(drawing, chart->margin_px + parts / 2 * period, 0, &part);
+    cut_out(ctx, drawing, chart->margin_px + parts / 2 * period, 0, &part);
     TRY(strip_create(ctx, &part, chart, 0, halo, &s));
     TRY(jali_optimise(ctx, &s.picture, &s.chart, &opt, result));
     TRY(take_part(ctx, &s, &result->mask, 0, halo, &part));
@@ -394,7 +394,7 @@ static jali_status trace_turns(jali_context *ctx, const jali_bitmap *mask, const
     *contours = (jali_contours){.unit_mm = chart->unit_mm};
     long_chart.width_px = turns * period + 2 * margin;
     TRY(jali_bitmap_create(ctx, period, mask->height_px, &part));
-    cut_out(mask, margin, 0, &part);
+    cut_out(ctx, mask, margin, 0, &part);
     TRY(jali_bitmap_create(ctx, long_chart.width_px, mask->height_px, &longer));
     fill(ctx, &longer, true);
     TRY(lay_parts(ctx, &part, margin, margin, margin + turns * period, &longer));

@@ -114,7 +114,7 @@ static jali_status framed(jali_context *ctx, const jali_bitmap *picture, bool ou
         jali_bitmap_create(ctx, picture->width_px + 2 * margin_px, picture->height_px + 2 * margin_px, out);
     if (status != JALI_OK) return status;
     fill(ctx, out, outside_solid);
-    paste(picture, margin_px, margin_px, out);
+    paste(ctx, picture, margin_px, margin_px, out);
     return JALI_OK;
 }
 

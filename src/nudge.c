@@ -61,7 +61,7 @@ static jali_status signed_distances(jali_context *ctx, const jali_bitmap *a, int
     size_t size = (size_t)rows * (size_t)a->width_px;
     *out = (grey){0};
     TRY(jali_bitmap_create(ctx, a->width_px, rows, &band));
-    cut_out(a, 0, from, &band);
+    cut_out(ctx, a, 0, from, &band);
     TRY(ALLOCATE(ctx, to_white, size));
     TRY(ALLOCATE(ctx, to_black, size));
     TRY(grey_create(ctx, a->width_px, rows, 1, out));

@@ -352,7 +352,7 @@ static jali_bitmap padded(const jali_bitmap *a, bool outside)
     jali_bitmap b;
     CHECK_OK(jali_bitmap_create(ctx, a->width_px + 2 * PAD_PX, a->height_px + 2 * PAD_PX, &b));
     fill(ctx, &b, outside);
-    paste(a, PAD_PX, PAD_PX, &b);
+    paste(ctx, a, PAD_PX, PAD_PX, &b);
     return b;
 }
 

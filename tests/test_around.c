@@ -67,8 +67,8 @@ static void check_widths(const jali_result *r)
 {
     jali_bitmap ring = ring_of(r, r->chart.width_px / 2 - r->chart.margin_px), twice;
     CHECK_OK(jali_bitmap_create(ctx, 2 * ring.width_px, ring.height_px, &twice));
-    paste(&ring, 0, 0, &twice);
-    paste(&ring, ring.width_px, 0, &twice);
+    paste(ctx, &ring, 0, 0, &twice);
+    paste(ctx, &ring, ring.width_px, 0, &twice);
     jali_adapt_options widths = jali_adapt_defaults();
     widths.growth_px = r->optimised.kernels_px[0];
     widths.solid_px = r->optimised.kernels_px[1];

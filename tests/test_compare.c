@@ -50,7 +50,7 @@ static jali_print print_of(const jali_bitmap *picture, int32_t finer, int32_t ri
     resize_nearest(ctx, picture, 0, 0, picture->width_px, picture->height_px, &large);
     for (int32_t y = room; y < print.solid.height_px - room; y++)
         paint_run(&print.solid, y + down, room + right, print.solid.width_px - room + right, true);
-    paste(&large, room + frame + right, room + frame + down, &print.solid);
+    paste(ctx, &large, room + frame + right, room + frame + down, &print.solid);
     jali_bitmap_free(ctx, &large);
     return print;
 }
@@ -143,7 +143,7 @@ TEST(an_ideal_print_of_a_picture_s_contours_has_the_grid_s_error)
     CHECK(more > 0);
     CHECK_OK(jali_bitmap_create(ctx, filled.width_px + 2 * more, filled.height_px + 2 * more, &print.solid));
     fill(ctx, &print.solid, true);
-    paste(&filled, more, more, &print.solid);
+    paste(ctx, &filled, more, more, &print.solid);
     print.pixel_mm[0] = print.pixel_mm[1] = pixel_mm;
     jali_reference reference = reference_of(&picture);
     jali_compare_options opt = options_of(&picture);

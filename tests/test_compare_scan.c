@@ -42,7 +42,7 @@ static subject subject_of(uint64_t seed, double side_mm)
     CHECK_OK(jali_bitmap_create(ctx, w + 2 * (frame + ROOM), h + 2 * (frame + ROOM), &s.print.solid));
     for (int32_t y = ROOM; y < s.print.solid.height_px - ROOM; y++)
         paint_run(&s.print.solid, y, ROOM, s.print.solid.width_px - ROOM, true);
-    paste(&s.reference.picture, ROOM + frame, ROOM + frame, &s.print.solid);
+    paste(ctx, &s.reference.picture, ROOM + frame, ROOM + frame, &s.print.solid);
     CHECK_OK(element_disc(ctx, 1 + 2 * floor(0.05 / pixel_mm + 0.5), &disc));
     CHECK_OK(jali_bitmap_create(ctx, s.print.solid.width_px, s.print.solid.height_px, &grown));
     CHECK_OK(dilate(ctx, &s.print.solid, &disc, false, &grown));

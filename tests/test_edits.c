@@ -497,7 +497,7 @@ static void check_random_edits(uint64_t seed, bool paper, bool locks, bool curve
     int32_t w = 100 + below(&seed, 100), h = 80 + below(&seed, 60), grain = 2 + below(&seed, 12);
     scene s = empty_scene(w, h, "{\"version\": 1, \"size\": [1, 1], \"edits\": []}");
     jali_bitmap blobs = random_blobs(&seed, w, h, grain, 10 + below(&seed, 60));
-    paste(&blobs, MARGIN, MARGIN, &s.drawing);
+    paste(ctx, &blobs, MARGIN, MARGIN, &s.drawing);
     jali_bitmap_free(ctx, &blobs);
     jali_edits_free(ctx, &s.edits);
     s.edits = random_edits(&seed, w, h, locks);

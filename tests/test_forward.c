@@ -347,7 +347,7 @@ TEST(a_sample_gives_the_golden_print)
     CHECK_OK(jali_sample(ctx, "girih", FINE, &sample));
     CHECK_OK(jali_bitmap_create(ctx, SIDE, SIDE, &mask));
     fill(ctx, &mask, true);
-    paste(&sample, MARGIN, MARGIN, &mask);
+    paste(ctx, &sample, MARGIN, MARGIN, &mask);
     jali_bitmap print = printed(&opt, &mask, true);
     for (int32_t y = 0; y < FINE; y++)
         for (int32_t x = 0; x < FINE; x++)

@@ -363,7 +363,7 @@ TEST(what_predict_prints_comes_back_as_the_profile)
         CHECK_OK(jali_board_layout(ctx, &coarse, &board));
         CHECK_OK(jali_board_bitmap(ctx, &board, &pixel_mm, &drawn));
         CHECK_OK(jali_bitmap_create(ctx, drawn.width_px + 2 * MARGIN, drawn.height_px + 2 * MARGIN, &mask));
-        paste(&drawn, MARGIN, MARGIN, &mask);
+        paste(ctx, &drawn, MARGIN, MARGIN, &mask);
         jali_predict_options opt = jali_predict_defaults();
         opt.picture_mm = mask.width_px * pixel_mm;
         opt.phi_e_solid_mm = cases[n].e_solid;

@@ -9,6 +9,8 @@
 #include "adapt/hand.h"
 #include "base/base.h"
 
+#include <stdlib.h>
+
 // Whether the patch, set on (0, 0), covers (dx, dy).
 static bool covers(const patch *p, int32_t dx, int32_t dy)
 {
@@ -42,33 +44,92 @@ static void move_inside(const jali_bitmap *mask, const field *e, int32_t at[2])
     at[1] = MAX(MIN(at[1], mask->height_px - e->below - 1), MIN(e->above, mask->height_px / 2));
 }
 
-// Cover the details of types A and B: an element at each. What it leaves of a long one comes next round. What
-// is fixed is left as it is.
+/// Where a detail is covered: the element set at `at` covers its first pixel (x, y).
+typedef struct cover {
+    int32_t x, y, at[2];
+} cover;
+
+typedef struct covering {
+    const jali_bitmap *mask, *thin;
+    const field *e;
+    bool outside_solid;
+    cover *cover; // [count], in raster order
+    int32_t count;
+} covering;
+
+static void place_cover(const covering *job, cover *c)
+{
+    cheapest_cover(job->mask, job->thin, job->e, c->x, c->y, c->at);
+    if (!job->outside_solid) move_inside(job->mask, job->e, c->at);
+}
+
+enum { BATCH = 16 };
+
+static void place_batch(void *shared, int32_t batch)
+{
+    covering *job = shared;
+    for (int32_t i = batch * BATCH; i < MIN((batch + 1) * BATCH, job->count); i++)
+        place_cover(job, &job->cover[i]);
+}
+
+// Whether an element set before can have changed what cover i was chosen by.
+static bool is_outdated(const covering *job, int32_t i)
+{
+    const field *e = job->e;
+    const cover *c = &job->cover[i];
+    int32_t high = e->above + e->below + 1, wide = e->left + e->right + 1;
+    for (int32_t j = i - 1; j >= 0 && job->cover[j].y >= c->y - 3 * high; j--) {
+        const int32_t *at = job->cover[j].at;
+        if (abs(at[0] - c->x) <= 2 * wide && abs(at[1] - c->y) <= 2 * high) return true;
+    }
+    return false;
+}
+
+static void list_first_pixels(const components *c, covering *job)
+{
+    for (int32_t y = 0; y < c->height_px; y++)
+        for (int32_t i = c->first[y]; i < c->first[y + 1]; i++)
+            if (c->label[i] == job->count) job->cover[job->count++] = (cover){.x = c->span[i][0], .y = y};
+}
+
+// An element at each detail, the first one first; where the ones before leave the choice as it is, it was
+// made side by side.
+static jali_status cover_details(jali_context *ctx, const jali_bitmap *thin, const field *e,
+                                 bool outside_solid, jali_bitmap *mask)
+{
+    jali_status status;
+    components c = {0};
+    covering job = {.mask = mask, .thin = thin, .e = e, .outside_solid = outside_solid};
+    TRY(label_components(ctx, thin, true, 8, &c));
+    TRY(ALLOCATE(ctx, job.cover, c.count));
+    list_first_pixels(&c, &job);
+    parallel(ctx, (job.count + BATCH - 1) / BATCH, place_batch, &job);
+    for (int32_t i = 0; i < job.count; i++) {
+        cover *here = &job.cover[i];
+        if (is_outdated(&job, i)) place_cover(&job, here);
+        paint_patch(mask, here->at[0], here->at[1], patch_at(e, here->at[0], here->at[1]), true);
+    }
+done:
+    components_free(ctx, &c);
+    release(ctx, job.cover);
+    return status;
+}
+
+// Cover the details of types A and B. What an element leaves of a long one comes next round. What is fixed is
+// left as it is.
 static jali_status thicken_details(jali_context *ctx, const jali_adapt_options *opt, const field *e,
                                    jali_bitmap *mask)
 {
     jali_details thin = {0};
-    components c = {0};
     jali_status status;
     TRY(jali_adapt_details(ctx, mask, true, opt, &thin));
     for (int32_t type = JALI_TYPE_A; type <= JALI_TYPE_B; type++) {
         if (opt->fixed) combine(ctx, RULE_AND_NOT, &thin.type[type], opt->fixed, &thin.type[type]);
-        TRY(label_components(ctx, &thin.type[type], true, 8, &c));
-        for (int32_t y = 0, next = 0; y < c.height_px; y++)
-            for (int32_t i = c.first[y]; i < c.first[y + 1]; i++) {
-                if (c.label[i] != next) continue;
-                next++;
-                int32_t at[2] = {0};
-                cheapest_cover(mask, &thin.type[type], e, c.span[i][0], y, at);
-                if (!opt->outside_solid) move_inside(mask, e, at);
-                paint_patch(mask, at[0], at[1], patch_at(e, at[0], at[1]), true);
-            }
-        components_free(ctx, &c);
+        TRY(cover_details(ctx, &thin.type[type], e, opt->outside_solid, mask));
     }
     put_back(opt, mask);
 done:
     jali_details_free(ctx, &thin);
-    components_free(ctx, &c);
     return status;
 }
 

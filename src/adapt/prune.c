@@ -7,22 +7,26 @@
 #include "adapt/widths.h"
 #include "base/base.h"
 
+#include <stdatomic.h>
+
 // A piece is worth three times the wrong pixels it saves: it is a feature of the picture, its bridge is not.
 // At 1 the sky of islands.png loses two thirds of its stars, and the recall of white over 24 runs two points.
 enum { PRIZE = 3 };
+
+enum { BAND_ROWS = 64, BAND_BRIDGES = 64 }; // at a time
 
 // More than all the pixels of a picture, and a million times that is a number yet.
 static const int64_t BEYOND_PRICE = INT64_C(1) << 42;
 
 typedef struct piece_tree {
     components c;
-    int64_t *value; // [c.count], the piece's prize, then its subtree's
-    int64_t *cost;  // [bridges], of a bridge
-    int32_t *first; // [c.count + 1], bridges at a piece
-    int32_t *at;    // [2 * bridges], their numbers
-    int32_t *above; // [c.count], bridge towards the root or -1
-    int32_t *order; // [c.count], from the root outwards
-    bool *kept;     // [c.count]
+    _Atomic int64_t *value; // [c.count], the piece's prize, then its subtree's
+    int64_t *cost;          // [bridges], of a bridge
+    int32_t *first;         // [c.count + 1], bridges at a piece
+    int32_t *at;            // [2 * bridges], their numbers
+    int32_t *above;         // [c.count], bridge towards the root or -1
+    int32_t *order;         // [c.count], from the root outwards
+    bool *kept;             // [c.count]
 } piece_tree;
 
 static int32_t other_end(const jali_bridge *bridge, int32_t piece)
@@ -51,38 +55,68 @@ done:
     return status;
 }
 
-// Wrong pixels and axes that a piece saves.
-static void weigh_pieces(const jali_bitmap *drawing, const jali_bitmap *axis, const jali_adapt_options *opt,
-                         const widths *w, piece_tree *t)
+/// What pieces and bridges are weighed by, and what stays of the print.
+typedef struct weighing {
+    const jali_bitmap *drawing, *axis;
+    jali_bitmap *print;
+    const jali_bridges *bridges;
+    const jali_adapt_options *opt;
+    const widths *w;
+    piece_tree *t;
+} weighing;
+
+// Wrong pixels and axes that a run saves.
+static int64_t saved_by_run(const weighing *job, int32_t y, int32_t x0, int32_t x1)
 {
-    for (int32_t y = 0; y < t->c.height_px; y++)
-        for (int32_t i = t->c.first[y]; i < t->c.first[y + 1]; i++) {
-            int32_t x0 = t->c.span[i][0], x1 = t->c.span[i][1];
-            int64_t worth = axis_worth_units(opt, true, patch_at(&w->solid, x0, y)->size,
-                                             patch_at(&w->hollow, x0, y)->size);
-            int64_t saved = WRONG_UNITS * (2 * count_run(drawing, y, x0, x1) - (x1 - x0)) +
-                            worth * count_run(axis, y, x0, x1);
-            t->value[t->c.label[i]] += PRIZE * saved;
-        }
+    const widths *w = job->w;
+    int64_t worth =
+        axis_worth_units(job->opt, true, patch_at(&w->solid, x0, y)->size, patch_at(&w->hollow, x0, y)->size);
+    return WRONG_UNITS * (2 * count_run(job->drawing, y, x0, x1) - (x1 - x0)) +
+           worth * count_run(job->axis, y, x0, x1);
+}
+
+static void weigh_band(void *shared, int32_t band)
+{
+    const weighing *job = shared;
+    const components *c = &job->t->c;
+    for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, c->height_px); y++)
+        for (int32_t i = c->first[y]; i < c->first[y + 1]; i++)
+            atomic_fetch_add_explicit(&job->t->value[c->label[i]],
+                                      PRIZE * saved_by_run(job, y, c->span[i][0], c->span[i][1]),
+                                      memory_order_relaxed);
 }
 
 // Wrong pixels that a bridge makes: its width for each pixel of its way that should be black, less those it
 // rights.
-static void weigh_bridges(const jali_bitmap *drawing, const jali_bitmap *print, const jali_bridges *bridges,
-                          const field *solid, piece_tree *t)
+static int64_t cost_of_bridge(const weighing *job, int32_t bridge)
 {
+    int64_t cost = 0;
     int32_t from[2], to[2];
-    for (int32_t i = 0; i < bridges->count; i++) {
-        for (int32_t leg = 0; jali_bridge_leg(bridges, i, leg, from, to); leg++) {
-            line_walk walk = walk_line(from, to);
-            while (walk_on(&walk)) {
-                if (jali_bitmap_get(print, walk.x, walk.y)) continue;
-                int32_t width_px = patch_at(solid, walk.x, walk.y)->size;
-                t->cost[i] += WRONG_UNITS * (jali_bitmap_get(drawing, walk.x, walk.y) ? -width_px : width_px);
-            }
+    for (int32_t leg = 0; jali_bridge_leg(job->bridges, bridge, leg, from, to); leg++) {
+        line_walk walk = walk_line(from, to);
+        while (walk_on(&walk)) {
+            if (jali_bitmap_get(job->print, walk.x, walk.y)) continue;
+            int32_t width_px = patch_at(&job->w->solid, walk.x, walk.y)->size;
+            cost += WRONG_UNITS * (jali_bitmap_get(job->drawing, walk.x, walk.y) ? -width_px : width_px);
         }
-        t->cost[i] = MAX(t->cost[i], 0);
     }
+    return MAX(cost, 0);
+}
+
+static void weigh_bridges(void *shared, int32_t band)
+{
+    const weighing *job = shared;
+    for (int32_t i = band * BAND_BRIDGES; i < MIN((band + 1) * BAND_BRIDGES, job->bridges->count); i++)
+        job->t->cost[i] = cost_of_bridge(job, i);
+}
+
+static void drop_band(void *shared, int32_t band)
+{
+    const weighing *job = shared;
+    const components *c = &job->t->c;
+    for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, c->height_px); y++)
+        for (int32_t i = c->first[y]; i < c->first[y + 1]; i++)
+            if (!job->t->kept[c->label[i]]) paint_run(job->print, y, c->span[i][0], c->span[i][1], false);
 }
 
 // A piece with a white pixel that is fixed is worth any bridge.
@@ -144,14 +178,14 @@ jali_status jali_adapt_prune(jali_context *ctx, const jali_bitmap *drawing, cons
     TRY(medial_axis(ctx, drawing, true, true, w.solid.most / 2 + 1, &axis));
     TRY(build_tree(ctx, print, bridges, &t));
     TRY(component_areas(ctx, &t.c, &area));
-    weigh_pieces(drawing, &axis, opt, &w, &t);
+    weighing job = {drawing, &axis, print, bridges, opt, &w, &t};
+    int32_t bands = (t.c.height_px + BAND_ROWS - 1) / BAND_ROWS;
+    parallel(ctx, bands, weigh_band, &job);
     if (opt->fixed) prize_fixed(opt->fixed, &t);
-    weigh_bridges(drawing, print, bridges, &w.solid, &t);
+    parallel(ctx, (bridges->count + BAND_BRIDGES - 1) / BAND_BRIDGES, weigh_bridges, &job);
     prune_tree(bridges, largest_piece(&t.c, area), &t);
     for (int32_t i = 0; i < t.c.count; i++) *dropped += !t.kept[i];
-    for (int32_t y = 0; y < t.c.height_px; y++)
-        for (int32_t i = t.c.first[y]; i < t.c.first[y + 1]; i++)
-            if (!t.kept[t.c.label[i]]) paint_run(print, y, t.c.span[i][0], t.c.span[i][1], false);
+    if (*dropped > 0) parallel(ctx, bands, drop_band, &job);
 done:
     components_free(ctx, &t.c);
     release(ctx, t.value);

@@ -86,24 +86,37 @@ static void stamp_in_turn(void *shared, int32_t turn)
     atomic_store(&s->chunks_done[band], chunk + 1);
 }
 
-// No places beyond the picture: a window around them would leave the padded bitmap.
-static void clear_pad(jali_bitmap *axis)
+typedef struct place_job {
+    jali_bitmap *axis, *open;
+} place_job;
+
+// The columns of word i that are not in the pad.
+static uint64_t inside_pad(const jali_bitmap *a, int64_t i)
 {
-    for (int32_t y = 0; y < axis->height_px; y++) {
-        bool beyond = y < PAD_PX || y >= axis->height_px - PAD_PX;
-        paint_run(axis, y, 0, beyond ? axis->width_px : PAD_PX, false);
-        paint_run(axis, y, axis->width_px - PAD_PX, axis->width_px, false);
+    int64_t beyond = a->width_px - PAD_PX - i * 64;
+    if (i < PAD_PX / 64 || beyond <= 0) return 0;
+    return beyond >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << beyond) - 1;
+}
+
+// No places beyond the picture: a window around them would leave the padded bitmap. Every other one is
+// opened, like the white squares of a chessboard: a disc beside the best place is nearly as good.
+static void place_band(void *shared, int32_t band)
+{
+    const place_job *job = shared;
+    const jali_bitmap *a = job->axis;
+    for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, a->height_px); y++) {
+        bool beyond = y < PAD_PX || y >= a->height_px - PAD_PX;
+        uint64_t white_squares = y % 2 ? UINT64_C(0x5555555555555555) : UINT64_C(0xaaaaaaaaaaaaaaaa);
+        for (int64_t i = 0, at = y * a->stride; i < a->stride; i++, at++) {
+            job->axis->word[at] &= beyond ? 0 : inside_pad(a, i);
+            job->open->word[at] = job->axis->word[at] & white_squares;
+        }
     }
 }
 
-// Keep every other place, like the white squares of a chessboard: a disc beside the best place is nearly as
-// good.
-static void thin_out(jali_bitmap *places)
+static void open_places(jali_context *ctx, jali_bitmap *axis, jali_bitmap *open)
 {
-    for (int32_t y = 0; y < places->height_px; y++)
-        for (int64_t i = 0; i < places->stride; i++)
-            places->word[y * places->stride + i] &=
-                y % 2 ? UINT64_C(0x5555555555555555) : UINT64_C(0xaaaaaaaaaaaaaaaa);
+    parallel(ctx, (axis->height_px + BAND_ROWS - 1) / BAND_ROWS, place_band, &(place_job){axis, open});
 }
 
 // Passes over the open places of both tones until one keeps nothing.
@@ -140,8 +153,7 @@ static jali_status open_wrong_places(jali_context *ctx, stamping *s, jali_bitmap
         else
             combine(ctx, RULE_AND_NOT, &s->print, &s->drawing, scratch);
         TRY(medial_axis(ctx, scratch, true, false, t->disc->most, &t->open));
-        clear_pad(&t->open);
-        thin_out(&t->open);
+        open_places(ctx, &t->open, &t->open);
     }
 done:
     return status;
@@ -170,9 +182,7 @@ static jali_status prepare_tone(jali_context *ctx, stamping *s, bool white, jali
               : field_close(ctx, &s->drawing, t->disc, true, scratch, &t->open));
     combine(ctx, RULE_XOR, &t->open, &s->drawing, &t->open);
     combine(ctx, RULE_AND, &t->axis, &t->open, &t->axis);
-    clear_pad(&t->axis);
-    combine(ctx, RULE_AND, &t->axis, &t->axis, &t->open);
-    thin_out(&t->open);
+    open_places(ctx, &t->axis, &t->open);
 done:
     return status;
 }
@@ -182,7 +192,7 @@ static jali_status pad(jali_context *ctx, const jali_bitmap *a, bool outside, ja
     jali_status status = jali_bitmap_create(ctx, a->width_px + 2 * PAD_PX, a->height_px + 2 * PAD_PX, padded);
     if (status != JALI_OK) return status;
     fill(ctx, padded, outside);
-    paste(a, PAD_PX, PAD_PX, padded);
+    paste(ctx, a, PAD_PX, PAD_PX, padded);
     return JALI_OK;
 }
 
@@ -292,7 +302,7 @@ jali_status jali_adapt_print(jali_context *ctx, const jali_bitmap *drawing, cons
         TRY(search(ctx, &s, &scratch, report));
     }
     TRY(jali_bitmap_create(ctx, drawing->width_px, drawing->height_px, print));
-    cut_out(&s.print, PAD_PX, PAD_PX, print);
+    cut_out(ctx, &s.print, PAD_PX, PAD_PX, print);
 done:
     if (status != JALI_OK) jali_bitmap_free(ctx, print);
     jali_bitmap_free(ctx, &scratch);

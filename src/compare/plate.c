@@ -47,7 +47,7 @@ jali_status draw_wanted(jali_context *ctx, const jali_reference *reference, cons
     if (status != JALI_OK) return status;
     for (int32_t y = f->around_px[1]; opt->frame_mm > 0 && y < all[1] - f->around_px[1]; y++)
         paint_run(plate, y, f->around_px[0], all[0] - f->around_px[0], true);
-    paste(picture, f->frame_px[0] + f->around_px[0], f->frame_px[1] + f->around_px[1], plate);
+    paste(ctx, picture, f->frame_px[0] + f->around_px[0], f->frame_px[1] + f->around_px[1], plate);
     return JALI_OK;
 }
 
@@ -74,7 +74,7 @@ jali_status measure_plate(jali_context *ctx, const jali_reference *reference, co
     double disc_px = M_PI / 4 * opt->phi_s_mm * opt->phi_s_mm / (f->pixel_mm[0] * f->pixel_mm[1]);
     TRY(jali_bitmap_create(ctx, reference->picture.width_px, reference->picture.height_px,
                            &c->print.printed));
-    cut_out(&c->plate, f->frame_px[0] + f->around_px[0], f->frame_px[1] + f->around_px[1], &c->print.printed);
+    cut_out(ctx, &c->plate, f->frame_px[0] + f->around_px[0], f->frame_px[1] + f->around_px[1], &c->print.printed);
     TRY(jali_measure(ctx, reference, &c->print));
     TRY(count_pieces(ctx, &c->plate, disc_px, &c->print.pieces));
 done:

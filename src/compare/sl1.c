@@ -182,7 +182,7 @@ static jali_status crop_print(jali_context *ctx, const char *name, jali_print *p
         return fail(ctx, JALI_BAD_INPUT, "%s exposes nothing in its layers %d to %d of %d", name,
                     print->first + 1, print->last + 1, print->layers);
     TRY(jali_bitmap_create(ctx, high[0] - low[0], high[1] - low[1], &cropped));
-    cut_out(&print->solid, low[0], low[1], &cropped);
+    cut_out(ctx, &print->solid, low[0], low[1], &cropped);
     jali_bitmap_free(ctx, &print->solid);
     print->solid = cropped;
     measure_print(print);

@@ -122,7 +122,7 @@ static jali_status place_mask(jali_context *ctx, const jali_bitmap *mask, int32_
     resize_nearest(ctx, mask, margin_px, margin_px, mask->width_px - 2 * margin_px,
                    mask->height_px - 2 * margin_px, &scaled);
     fill(ctx, fine, outside);
-    paste(&scaled, fine_margin, fine_margin, fine);
+    paste(ctx, &scaled, fine_margin, fine_margin, fine);
     jali_bitmap_free(ctx, &scaled);
     return JALI_OK;
 }

@@ -97,31 +97,66 @@ void copy_pixels(jali_context *ctx, const jali_bitmap *src, jali_bitmap *dst)
     parallel(ctx, band_count(job.words), copy_band, &job);
 }
 
+// --- By rows
+
+enum { BAND_ROWS = 256 };
+
+typedef struct rows_job {
+    const jali_bitmap *src;
+    jali_bitmap *dst;
+    int32_t left, top; // of the smaller one in the larger one
+    bool white;
+    void (*row)(const struct rows_job *job, int32_t y);
+} rows_job;
+
+static void run_band(void *shared, int32_t band)
+{
+    const rows_job *job = shared;
+    int32_t rows = MIN(job->src->height_px, job->dst->height_px), y1 = MIN((band + 1) * BAND_ROWS, rows);
+    for (int32_t y = band * BAND_ROWS; y < y1; y++) job->row(job, y);
+}
+
+static void run_rows(jali_context *ctx, rows_job job, void (*row)(const rows_job *job, int32_t y))
+{
+    job.row = row;
+    int32_t rows = MIN(job.src->height_px, job.dst->height_px);
+    parallel(ctx, (rows + BAND_ROWS - 1) / BAND_ROWS, run_band, &job);
+}
+
 // Bits beyond the width stay 0 whatever is written into them.
-static void clear_padding(jali_bitmap *a)
+static void clear_padding(const jali_bitmap *a, uint64_t *row)
 {
     int64_t whole = a->width_px / 64;
-    uint64_t rest = (UINT64_C(1) << a->width_px % 64) - 1;
-    for (int32_t y = 0; y < a->height_px; y++) {
-        uint64_t *row = a->word + y * a->stride;
-        for (int64_t i = whole; i < a->stride; i++) row[i] &= i == whole ? rest : 0;
-    }
+    if (whole < a->stride) row[whole] &= (UINT64_C(1) << a->width_px % 64) - 1;
+    for (int64_t i = whole + 1; i < a->stride; i++) row[i] = 0;
+}
+
+static void invert_row(const rows_job *job, int32_t y)
+{
+    const uint64_t *from = job->src->word + y * job->src->stride;
+    uint64_t *to = job->dst->word + y * job->dst->stride;
+    for (int64_t i = 0; i < job->src->stride; i++) to[i] = ~from[i];
+    clear_padding(job->dst, to);
 }
 
 void invert(jali_context *ctx, const jali_bitmap *a, jali_bitmap *dst)
 {
-    (void)ctx;
-    for (int64_t i = 0; i < word_count(a); i++) dst->word[i] = ~a->word[i];
-    clear_padding(dst);
+    run_rows(ctx, (rows_job){.src = a, .dst = dst}, invert_row);
+}
+
+static void fill_row(const rows_job *job, int32_t y)
+{
+    uint64_t *to = job->dst->word + y * job->dst->stride;
+    memset(to, job->white ? 0xff : 0, (size_t)job->dst->stride * sizeof *to);
+    if (job->white) clear_padding(job->dst, to);
 }
 
 void fill(jali_context *ctx, jali_bitmap *dst, bool white)
 {
-    (void)ctx;
-    if (!word_count(dst)) return;
-    memset(dst->word, white ? 0xff : 0, (size_t)word_count(dst) * sizeof *dst->word);
-    if (white) clear_padding(dst);
+    run_rows(ctx, (rows_job){.src = dst, .dst = dst, .white = white}, fill_row);
 }
+
+// --- Counts
 
 static void count_band(void *shared, int32_t band)
 {
@@ -160,30 +195,38 @@ static uint64_t bits_at(const uint64_t *row, int64_t words, int64_t x)
     return bit && i + 1 < words ? low | row[i + 1] << (64 - bit) : low;
 }
 
-void cut_out(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst)
+static void cut_row(const rows_job *job, int32_t y)
 {
-    for (int32_t y = 0; y < dst->height_px; y++) {
-        const uint64_t *from = src->word + (int64_t)(y + top) * src->stride;
-        uint64_t *to = dst->word + (int64_t)y * dst->stride;
-        for (int32_t x = 0; x < dst->width_px; x += 64) {
-            uint64_t mask = dst->width_px - x >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << (dst->width_px - x)) - 1;
-            to[x >> 6] = bits_at(from, src->stride, (int64_t)left + x) & mask;
-        }
+    const jali_bitmap *src = job->src, *dst = job->dst;
+    const uint64_t *from = src->word + (int64_t)(y + job->top) * src->stride;
+    uint64_t *to = dst->word + (int64_t)y * dst->stride;
+    for (int32_t x = 0; x < dst->width_px; x += 64) {
+        uint64_t mask = dst->width_px - x >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << (dst->width_px - x)) - 1;
+        to[x >> 6] = bits_at(from, src->stride, (int64_t)job->left + x) & mask;
     }
 }
 
-void paste(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst)
+void cut_out(jali_context *ctx, const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst)
 {
-    int32_t shift = left & 63;
-    for (int32_t y = 0; y < src->height_px; y++) {
-        const uint64_t *from = src->word + (int64_t)y * src->stride;
-        uint64_t *to = dst->word + (int64_t)(y + top) * dst->stride + (left >> 6);
-        for (int32_t x = 0; x < src->width_px; x += 64) {
-            uint64_t mask = src->width_px - x >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << (src->width_px - x)) - 1;
-            uint64_t word = from[x >> 6];
-            to[x >> 6] = (to[x >> 6] & ~(mask << shift)) | word << shift;
-            if (shift && mask >> (64 - shift))
-                to[(x >> 6) + 1] = (to[(x >> 6) + 1] & ~(mask >> (64 - shift))) | word >> (64 - shift);
-        }
+    run_rows(ctx, (rows_job){.src = src, .dst = dst, .left = left, .top = top}, cut_row);
+}
+
+static void paste_row(const rows_job *job, int32_t y)
+{
+    const jali_bitmap *src = job->src, *dst = job->dst;
+    int32_t shift = job->left & 63;
+    const uint64_t *from = src->word + (int64_t)y * src->stride;
+    uint64_t *to = dst->word + (int64_t)(y + job->top) * dst->stride + (job->left >> 6);
+    for (int32_t x = 0; x < src->width_px; x += 64) {
+        uint64_t mask = src->width_px - x >= 64 ? ~UINT64_C(0) : (UINT64_C(1) << (src->width_px - x)) - 1;
+        uint64_t word = from[x >> 6];
+        to[x >> 6] = (to[x >> 6] & ~(mask << shift)) | word << shift;
+        if (shift && mask >> (64 - shift))
+            to[(x >> 6) + 1] = (to[(x >> 6) + 1] & ~(mask >> (64 - shift))) | word >> (64 - shift);
     }
+}
+
+void paste(jali_context *ctx, const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst)
+{
+    run_rows(ctx, (rows_job){.src = src, .dst = dst, .left = left, .top = top}, paste_row);
 }

@@ -23,9 +23,9 @@ int64_t count_combined(jali_context *ctx, bitmap_rule rule, const jali_bitmap *a
 bool any_white(jali_context *ctx, const jali_bitmap *a);
 
 /// Copy src into dst with its upper left corner at (left, top); it lies wholly inside.
-void paste(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst);
+void paste(jali_context *ctx, const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst);
 /// Copy the window of src that begins at (left, top) and has dst's size; it lies wholly inside.
-void cut_out(const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst);
+void cut_out(jali_context *ctx, const jali_bitmap *src, int32_t left, int32_t top, jali_bitmap *dst);
 
 // --- Morphology (morphology.c)
 

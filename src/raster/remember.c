@@ -74,17 +74,32 @@ static bool words_differ(const uint64_t *a, const uint64_t *b, int64_t count)
 
 typedef struct comparison {
     const jali_bitmap *now, *then;
-    bool *differs; // [height_px]
+    int64_t aside; // words of the neighbouring columns that a column's words are made of
+    bool *row;     // [height_px], whether anything differs
+    bool *column;  // [height_px][stride / COLUMN], where it does: what the column is made of
 } comparison;
 
 enum { BAND_ROWS = 256 };
+
+static void compare_columns(const comparison *c, int32_t y)
+{
+    int64_t stride = c->now->stride;
+    const uint64_t *now = c->now->word + y * stride, *then = c->then->word + y * stride;
+    bool *differs = c->column + y * (stride / COLUMN);
+    for (int64_t column = 0; column < stride; column += COLUMN) {
+        int64_t first = MAX(column - c->aside, 0), end = MIN(column + COLUMN + c->aside, stride);
+        differs[column / COLUMN] = words_differ(now + first, then + first, end - first);
+    }
+}
 
 static void compare_rows(void *shared, int32_t band)
 {
     const comparison *c = shared;
     int64_t stride = c->now->stride;
-    for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, c->now->height_px); y++)
-        c->differs[y] = words_differ(c->now->word + y * stride, c->then->word + y * stride, stride);
+    for (int32_t y = band * BAND_ROWS; y < MIN((band + 1) * BAND_ROWS, c->now->height_px); y++) {
+        c->row[y] = words_differ(c->now->word + y * stride, c->then->word + y * stride, stride);
+        if (c->row[y]) compare_columns(c, y);
+    }
 }
 
 // What of the result can differ, as src differs from `before`.
@@ -94,23 +109,19 @@ static jali_status find_blocks(jali_context *ctx, const field *f, const jali_bit
     jali_status status;
     arena_mark mark = arena_here(ctx);
     int32_t reach = MAX(f->above, f->below) + 1, height = src->height_px; // + 1: even elements are reflected
-    int64_t aside = (MAX(f->left, f->right) + 64) / 64, stride = src->stride;
+    int32_t columns = (int32_t)(src->stride / COLUMN);
     int32_t *last; // [columns]
-    comparison c = {src, before, NULL};
-    TRY(ARENA(ctx, last, stride / COLUMN));
-    TRY(ARENA(ctx, c.differs, height));
+    comparison c = {.now = src, .then = before, .aside = (MAX(f->left, f->right) + 64) / 64};
+    TRY(ARENA(ctx, last, columns));
+    TRY(ARENA(ctx, c.row, height));
+    TRY(ARENA(ctx, c.column, (size_t)height * (size_t)columns));
     parallel(ctx, (height + BAND_ROWS - 1) / BAND_ROWS, compare_rows, &c);
-    for (int64_t i = 0; i < stride / COLUMN; i++) last[i] = -1;
-    for (int32_t y = 0; y < height; y++) {
-        const uint64_t *now = src->word + y * stride, *then = before->word + y * stride;
-        if (!c.differs[y]) continue;
-        for (int64_t column = 0; column < stride; column += COLUMN) {
-            int64_t first = MAX(column - aside, 0), end = MIN(column + COLUMN + aside, stride);
-            if (words_differ(now + first, then + first, end - first))
-                TRY(add_rows(ctx, column, MAX(y - reach, 0), MIN(y + reach + 1, height),
-                             &last[column / COLUMN], b));
-        }
-    }
+    for (int32_t i = 0; i < columns; i++) last[i] = -1;
+    for (int32_t y = 0; y < height; y++)
+        for (int32_t i = 0; c.row[y] && i < columns; i++)
+            if (c.column[(int64_t)y * columns + i])
+                TRY(add_rows(ctx, (int64_t)i * COLUMN, MAX(y - reach, 0), MIN(y + reach + 1, height),
+                             &last[i], b));
 done:
     arena_rewind(ctx, mark);
     return status;
@@ -121,6 +132,19 @@ static void copy_block(const jali_bitmap *from, const word_block *b, jali_bitmap
     for (int64_t y = b->y0; y < b->y1; y++)
         memcpy(to->word + y * to->stride + b->first, from->word + y * from->stride + b->first,
                (size_t)b->words * sizeof *to->word);
+}
+
+typedef struct keeping {
+    const blocks *b;
+    const jali_bitmap *src, *dst;
+    known *k;
+} keeping;
+
+static void keep_block(void *shared, int32_t i)
+{
+    const keeping *job = shared;
+    copy_block(job->src, &job->b->block[i], &job->k->src);
+    copy_block(job->dst, &job->b->block[i], &job->k->dst);
 }
 
 // Make all of dst, and remember it.
@@ -150,10 +174,7 @@ static jali_status morph_changes(jali_context *ctx, morph_rule rule, const jali_
     copy_pixels(ctx, &k->dst, dst);
     if (b->count == 0) return JALI_OK;
     jali_status status = morph_blocks(ctx, rule, src, &f->whole, outside, b->block, b->count, dst);
-    for (int32_t i = 0; status == JALI_OK && i < b->count; i++) {
-        copy_block(src, &b->block[i], &k->src);
-        copy_block(dst, &b->block[i], &k->dst);
-    }
+    if (status == JALI_OK) parallel(ctx, b->count, keep_block, &(keeping){b, src, dst, k});
     return status;
 }
 
