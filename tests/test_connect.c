@@ -197,6 +197,56 @@ TEST(every_bridge_is_the_greedy_one_far_apart)
     }
 }
 
+// Few dots in a wide void: steps are taken many at once, and taken back where they go too far.
+TEST(every_bridge_is_the_greedy_one_in_a_wide_void)
+{
+    uint64_t seed = 12;
+    for (int32_t i = 0; i < 400; i++) {
+        jali_bitmap a;
+        CHECK_OK(jali_bitmap_create(ctx, 150, 90, &a));
+        for (int32_t k = 0; k < 3 + i % 12; k++) {
+            int32_t x = (int32_t)(next_random(&seed) >> 40) % 148,
+                    y = (int32_t)(next_random(&seed) >> 40) % 88;
+            for (int32_t dx = 0; dx < 1 + k % 3; dx++) jali_bitmap_set(&a, x + dx, y + dx / 2, true);
+        }
+        check_connect(&a, JALI_METRIC_CITY_BLOCK);
+        check_connect(&a, JALI_METRIC_OCTAGON);
+        jali_bitmap_free(ctx, &a);
+    }
+}
+
+// Frames within frames, each a part as large as what it holds, and dots between them.
+static jali_bitmap random_frames(uint64_t *seed, int32_t width, int32_t height)
+{
+    jali_bitmap a;
+    CHECK_OK(jali_bitmap_create(ctx, width, height, &a));
+    for (int32_t x0 = 0, y0 = 0, x1 = width, y1 = height; x1 - x0 > 8 && y1 - y0 > 8;) {
+        int32_t in[4], thick = 1 + (int32_t)(next_random(seed) >> 40) % 3;
+        for (int32_t k = 0; k < 4; k++) in[k] = 1 + (int32_t)(next_random(seed) >> 40) % 70;
+        x0 += in[0], y0 += in[1], x1 -= in[2], y1 -= in[3];
+        for (int32_t y = y0; y < y1; y++)
+            for (int32_t x = x0; x < x1; x++)
+                if (MIN(MIN(x - x0, x1 - 1 - x), MIN(y - y0, y1 - 1 - y)) < thick)
+                    jali_bitmap_set(&a, x, y, true);
+        x0 += thick, y0 += thick, x1 -= thick, y1 -= thick;
+        if (x1 - x0 > 8 && y1 - y0 > 8)
+            jali_bitmap_set(&a, x0 + (int32_t)(next_random(seed) >> 40) % (x1 - x0),
+                            y0 + (int32_t)(next_random(seed) >> 40) % (y1 - y0), true);
+    }
+    return a;
+}
+
+TEST(every_bridge_is_the_greedy_one_around_large_parts)
+{
+    uint64_t seed = 13;
+    for (int32_t i = 0; i < 8; i++) {
+        jali_bitmap a = random_frames(&seed, 420, 400);
+        check_connect(&a, JALI_METRIC_CITY_BLOCK);
+        check_connect(&a, JALI_METRIC_OCTAGON);
+        jali_bitmap_free(ctx, &a);
+    }
+}
+
 TEST(all_pictures_of_4x4)
 {
     jali_bitmap a;
@@ -322,6 +372,12 @@ TEST(any_number_of_threads_gives_the_same_bytes)
         for (int64_t k = (int64_t)a.width_px * a.height_px * pictures[i].most / 1000; k > 0; k--)
             jali_bitmap_set(&a, (int32_t)((next_random(&seed) >> 40) % (uint64_t)a.width_px),
                             (int32_t)((next_random(&seed) >> 40) % (uint64_t)a.height_px), true);
+        check_threads(by_threads, &a, JALI_METRIC_CITY_BLOCK);
+        check_threads(by_threads, &a, JALI_METRIC_OCTAGON);
+        jali_bitmap_free(ctx, &a);
+    }
+    for (int32_t i = 0; i < 12; i++) {
+        jali_bitmap a = random_frames(&seed, 500 + 60 * i, 900 - 40 * i);
         check_threads(by_threads, &a, JALI_METRIC_CITY_BLOCK);
         check_threads(by_threads, &a, JALI_METRIC_OCTAGON);
         jali_bitmap_free(ctx, &a);
@@ -515,6 +571,8 @@ int main(void)
         cmocka_unit_test(every_bridge_is_the_greedy_one_on_small_pictures),
         cmocka_unit_test(every_bridge_is_the_greedy_one_across_words),
         cmocka_unit_test(every_bridge_is_the_greedy_one_far_apart),
+        cmocka_unit_test(every_bridge_is_the_greedy_one_in_a_wide_void),
+        cmocka_unit_test(every_bridge_is_the_greedy_one_around_large_parts),
         cmocka_unit_test(all_pictures_of_4x4),
         cmocka_unit_test(nothing_to_join_changes_nothing),
         cmocka_unit_test(touching_corners_are_two_parts),

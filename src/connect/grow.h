@@ -18,8 +18,9 @@ void growing_free(jali_context *ctx, growing *g);
 
 /// Step on until pixels of the picture are met that the part did not have.
 ///   in   limit   steps at most, in all; the planes' borders are black
-///   out  false: nothing is met, or the run was cancelled
-bool grow_until_met(jali_context *ctx, const window *w, int32_t limit, jali_metric metric, growing *g);
+///   out  w       where something is met, less of it
+///        false: nothing is met, or the run was cancelled
+bool grow_until_met(jali_context *ctx, window *w, int32_t limit, jali_metric metric, growing *g);
 /// The first pixel in raster order that the last step met.
 void first_met_pixel(const window *w, const growing *g, int32_t pixel[2]);
 /// What has grown goes on in a wider window around the same part.

@@ -10,7 +10,7 @@
 
 #include <stdatomic.h>
 
-enum { LARGE_WORDS = 1 << 11, LEAST_ROWS = 96 };
+enum { LARGE_WORDS = 1 << 11, LEAST_ROWS = 96, RIM_PX = 56 };
 
 typedef struct slice_search {
     jali_context *ctx;
@@ -44,10 +44,22 @@ static void draw_others(const slice_search *t, const window *w, plane *picture)
     }
 }
 
+// What of the part is the slice's.
+static void draw_own(const slice_search *t, slice *s)
+{
+    const window *whole = &t->whole;
+    clear_plane(&s->w, &s->g.grown);
+    int64_t left = (whole->x0 - s->w.x0) / 64;
+    for (int32_t y = s->box[1]; y < s->box[3]; y++)
+        memcpy(row_of(&s->w, &s->g.grown, y - s->w.y0) + left, row_of(whole, &t->s->own, y - whole->y0),
+               (size_t)whole->words * sizeof(uint64_t));
+}
+
 static void search_slice(void *shared, int32_t index)
 {
     slice_search *t = shared;
     slice *s = &t->s->each[index];
+    if (s->g.steps == 0) draw_own(t, s);
     draw_others(t, &s->w, &s->g.picture);
     s->met = grow_until_met(t->ctx, &s->w, MIN(t->rim, t->least), t->metric, &s->g);
     if (!s->met) return;
@@ -74,20 +86,14 @@ static const slice *nearest_met(const slices *s)
 
 static jali_status cut(slice_search *t, const int32_t box[4], slice *s, int32_t index)
 {
-    int32_t rows = box[3] - box[1], count = t->s->count;
-    int32_t y0 = box[1] + (int32_t)((int64_t)rows * index / count),
-            y1 = box[1] + (int32_t)((int64_t)rows * (index + 1) / count);
-    memcpy(s->box, (int32_t[4]){box[0], y0, box[2], y1}, sizeof s->box);
+    int64_t rows = box[3] - box[1], count = t->s->count;
+    s->box[0] = box[0];
+    s->box[1] = box[1] + (int32_t)(rows * index / count);
+    s->box[2] = box[2];
+    s->box[3] = box[1] + (int32_t)(rows * (index + 1) / count);
     s->w = window_around(t->solid, s->box, t->rim);
     s->g.steps = 0;
-    jali_status status = make_room(t->ctx, &s->w, &s->g);
-    if (status != JALI_OK) return status;
-    clear_plane(&s->w, &s->g.grown);
-    int64_t left = (t->whole.x0 - s->w.x0) / 64;
-    for (int32_t y = y0; y < y1; y++)
-        memcpy(row_of(&s->w, &s->g.grown, y - s->w.y0) + left, row_of(&t->whole, &t->s->own, y - t->whole.y0),
-               (size_t)t->whole.words * sizeof(uint64_t));
-    return JALI_OK;
+    return make_room(t->ctx, &s->w, &s->g);
 }
 
 static jali_status widen_slice(slice_search *t, slice *s)
@@ -103,7 +109,7 @@ jali_status nearest_by_slices(jali_context *ctx, const jali_bitmap *solid, const
 {
     jali_status status;
     const slice *nearest = NULL;
-    slice_search t = {.ctx = ctx, .solid = solid, .metric = metric, .s = s, .rim = FIRST_RIM_PX};
+    slice_search t = {.ctx = ctx, .solid = solid, .metric = metric, .s = s, .rim = RIM_PX};
     t.least = INT32_MAX;
     t.whole = window_around(solid, p->box[root], 0);
     s->count = slices_of(ctx, p, root);

@@ -9,7 +9,7 @@
 #include "raster/remember.h"
 #include "base/base.h"
 
-enum { COLUMN = 8 }; // words, a block's least width
+enum { COLUMN = 8, MOST_ROWS = 512 }; // words, a block's least width; a block's height
 
 typedef struct field_memory {
     known last[MORPH_RULES];
@@ -50,20 +50,23 @@ typedef struct blocks {
     int64_t words; // in all
 } blocks;
 
-// The rows y0 .. y1-1 of a column, whose last block is *last: joined with it where they touch it.
+// The rows y0 .. y1-1 of a column, whose last block is *last: joined with it where they touch it, as long as
+// it is not so high that one thread would have most of the work.
 static jali_status add_rows(jali_context *ctx, int64_t first, int32_t y0, int32_t y1, int32_t *last,
                             blocks *b)
 {
-    if (*last >= 0 && y0 <= b->block[*last].y1) {
-        b->words += (int64_t)(y1 - b->block[*last].y1) * COLUMN;
-        b->block[*last].y1 = y1;
+    word_block *before = *last >= 0 ? &b->block[*last] : NULL;
+    int32_t from = before ? MAX(y0, before->y1) : y0;
+    if (from >= y1) return JALI_OK;
+    b->words += (int64_t)(y1 - from) * COLUMN;
+    if (before && from == before->y1 && y1 - before->y0 <= MOST_ROWS) {
+        before->y1 = y1;
         return JALI_OK;
     }
     jali_status status = GROW(ctx, b->block, b->capacity, b->count + 1);
     if (status != JALI_OK) return status;
     *last = b->count++;
-    b->block[*last] = (word_block){first, COLUMN, y0, y1};
-    b->words += (int64_t)(y1 - y0) * COLUMN;
+    b->block[*last] = (word_block){first, COLUMN, from, y1};
     return JALI_OK;
 }
 
