@@ -207,11 +207,14 @@ static void crop_to_met(window *w, int32_t steps, growing *g)
 }
 
 // On a copy: what others grow side by side may be in the same cache line.
-bool grow_until_met(jali_context *ctx, window *w, int32_t limit, jali_metric metric, growing *given)
+bool grow_until_met(jali_context *ctx, window *w, int32_t limit, const atomic_int *least, jali_metric metric,
+                    growing *given)
 {
     growing g = *given;
     bool met = false;
-    for (int32_t most = w->border; g.steps < limit && !stopping(ctx);) {
+    for (int32_t most = w->border; !stopping(ctx);) {
+        if (least) limit = MIN(limit, atomic_load_explicit(least, memory_order_relaxed));
+        if (g.steps >= limit) break;
         int32_t steps = jump_length(metric, g.steps, MIN(most, limit - g.steps));
         bool meets = take_steps(w, metric, steps, &g);
         if (meets && steps > 1) {

@@ -4,6 +4,8 @@
 
 #include "connect/window.h"
 
+#include <stdatomic.h>
+
 /// What grows, before and after a step, and the picture that it may meet. {0} is valid and empty.
 typedef struct growing {
     plane picture, grown, next, spare;
@@ -18,9 +20,11 @@ void growing_free(jali_context *ctx, growing *g);
 
 /// Step on until pixels of the picture are met that the part did not have.
 ///   in   limit   steps at most, in all; the planes' borders are black
+///        least   NULL or a limit that others lower meanwhile
 ///   out  w       where something is met, less of it
 ///        false: nothing is met, or the run was cancelled
-bool grow_until_met(jali_context *ctx, window *w, int32_t limit, jali_metric metric, growing *g);
+bool grow_until_met(jali_context *ctx, window *w, int32_t limit, const atomic_int *least, jali_metric metric,
+                    growing *g);
 /// The first pixel in raster order that the last step met.
 void first_met_pixel(const window *w, const growing *g, int32_t pixel[2]);
 /// What has grown goes on in a wider window around the same part.

@@ -35,7 +35,7 @@ static jali_status go_on(jali_context *ctx, const jali_bitmap *solid, const part
     *found = false;
     while (!stopping(ctx)) {
         draw_picture(solid, &w, &s->g.picture);
-        if (grow_until_met(ctx, &w, MIN(s->rim, longest), metric, &s->g)) {
+        if (grow_until_met(ctx, &w, MIN(s->rim, longest), NULL, metric, &s->g)) {
             first_met_pixel(&w, &s->g, bridge->to);
             nearest_own(&first, &s->own, metric, s->g.steps, bridge->to, bridge->from);
             *found = true;

@@ -8,8 +8,6 @@
 #include "connect/slices.h"
 #include "base/base.h"
 
-#include <stdatomic.h>
-
 enum { LARGE_WORDS = 1 << 11, LEAST_ROWS = 96, RIM_PX = 56 };
 
 typedef struct slice_search {
@@ -61,7 +59,7 @@ static void search_slice(void *shared, int32_t index)
     slice *s = &t->s->each[index];
     if (s->g.steps == 0) draw_own(t, s);
     draw_others(t, &s->w, &s->g.picture);
-    s->met = grow_until_met(t->ctx, &s->w, MIN(t->rim, t->least), t->metric, &s->g);
+    s->met = grow_until_met(t->ctx, &s->w, t->rim, &t->least, t->metric, &s->g);
     if (!s->met) return;
     first_met_pixel(&s->w, &s->g, s->to);
     int32_t least = t->least;

@@ -54,12 +54,19 @@ void draw_part(const parts *p, int32_t root, const window *w, plane *own)
 
 void draw_picture(const jali_bitmap *solid, const window *w, plane *picture)
 {
-    clear_plane(w, picture);
-    int64_t first = w->x0 / 64, skip = MAX(-first, 0), count = MIN(w->words, solid->stride - first) - skip;
-    for (int32_t y = MAX(-w->y0, 0); y < MIN(w->rows, solid->height_px - w->y0); y++)
-        memcpy(row_of(w, picture, y) + skip,
-               solid->word + (int64_t)(w->y0 + y) * solid->stride + first + skip,
-               (size_t)count * sizeof *picture->word);
+    int32_t first = w->x0 / 64, left = MAX(-first, 0), right = MIN(w->words, (int32_t)solid->stride - first);
+    clear_border(w, picture);
+    for (int32_t y = 0; y < w->rows; y++) {
+        uint64_t *row = row_of(w, picture, y);
+        int64_t at = w->y0 + y;
+        bool beyond = at < 0 || at >= solid->height_px;
+        int32_t from = beyond ? w->words : left, to = beyond ? w->words : right;
+        for (int32_t i = -1; i < from; i++) row[i] = 0;
+        if (!beyond)
+            memcpy(row + from, solid->word + at * solid->stride + first + from,
+                   (size_t)(to - from) * sizeof *row);
+        for (int32_t i = to; i <= w->words; i++) row[i] = 0;
+    }
 }
 
 static int64_t distance_of(jali_metric metric, int64_t dx, int64_t dy)
