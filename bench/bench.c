@@ -6,6 +6,7 @@
 //   --sizes    megapixels at which the samples are drawn (1,5.8); "none": the images alone
 //   --threads  how many (1)
 //   --against  time each case with so many threads too, run by run in turns, and print how much faster it is
+//              (the case "spread" is how much the machine has to give)
 //   --samples  which (girih,lettering,halftone)
 //   --images   a folder of PNG files (../shared/data/images when it is there); "none": the samples alone
 //   --runs     the median of at most so many (5); fewer once a case has taken 5 s
