@@ -138,7 +138,7 @@ jali_status disc_means(jali_context *ctx, const jali_sheet *sheet, const float *
         normal[t][2] = 1;
         thickness[t] = sheet->thickness_mm[0];
     }
-    TRY(fans_of(ctx, sheet, (const double(*)[3])normal, thickness, &f));
+    TRY(fans_of(ctx, sheet, (const double(*)[3])normal, thickness, NULL, &f));
     TRY(ALLOCATE(ctx, at_fan, f.fan_count));
     for (int32_t i = 0; i < sheet->node_count; i++)
         for (int32_t k = f.first_fan[i]; k < f.first_fan[i + 1]; k++) at_fan[k] = value[(size_t)i * stride];

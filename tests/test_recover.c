@@ -194,12 +194,12 @@ TEST(circles_cut_triangles_exactly)
 }
 
 // The fans of a flat model of one thickness, and a value at each.
-static double *slope_on(const jali_sheet *sheet, fans *f)
+static double *slope_on(const jali_sheet *sheet, const uint8_t *wanted, fans *f)
 {
     double(*up)[3] = zeros((size_t)sheet->triangle_count, sizeof *up);
     double *thick = zeros((size_t)sheet->triangle_count, sizeof *thick);
     for (int32_t t = 0; t < sheet->triangle_count; t++) up[t][2] = thick[t] = 1;
-    CHECK_OK(fans_of(ctx, sheet, (const double(*)[3])up, thick, f));
+    CHECK_OK(fans_of(ctx, sheet, (const double(*)[3])up, thick, wanted, f));
     double *value = zeros((size_t)f->fan_count, sizeof *value);
     for (int32_t n = 0; n < sheet->node_count; n++)
         for (int32_t i = f->first_fan[n]; i < f->first_fan[n + 1]; i++) value[i] = 3 + sheet->node[n][1];
@@ -215,7 +215,7 @@ TEST(means_are_over_discs_half_discs_and_what_is_joined)
     for (int32_t n = 0; n < m.node_count; n++)
         for (int k = 0; k < 2; k++) m.node[n][k] *= 12;
     jali_sheet sheet = model_sheet(&m);
-    double *value = slope_on(&sheet, &f), radius = 2.2, off = 4 * radius / (3 * M_PI);
+    double *value = slope_on(&sheet, NULL, &f), radius = 2.2, off = 4 * radius / (3 * M_PI);
     CHECK_INT(f.fan_count, m.node_count);
     CHECK(fabs(mean_around(&sheet, &f, value, node_at(&m, 0.5, 0.5), radius) - 9) < 1e-12);
     CHECK(fabs(mean_around(&sheet, &f, value, node_at(&m, 0.5, 0), radius) - 3 - off) < 1e-12);
@@ -234,9 +234,12 @@ TEST(means_are_over_discs_half_discs_and_what_is_joined)
     m.node_count += 6;
     free(sheet.thickness_mm);
     sheet = model_sheet(&m);
-    value = slope_on(&sheet, &f);
+    uint8_t *none = zeros((size_t)m.node_count, sizeof *none);
+    value = slope_on(&sheet, none, &f); // sides that were not sought are found as they are met
     CHECK(fabs(mean_around(&sheet, &f, value, 6 * 13 + 3, radius) - 9 + off) < 1e-12);
     CHECK(fabs(mean_around(&sheet, &f, value, m.node_count - 3, radius) - 9 - off) < 1e-12);
+    CHECK(f.beside[0] == NOT_SOUGHT);
+    free(none);
     fans_free(ctx, &f);
     free(value);
     free(sheet.thickness_mm);

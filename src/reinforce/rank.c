@@ -19,6 +19,7 @@ typedef struct table {
     double *f;         // [rows * rows] B K^-1 B^T
     double *moved;     // [rows] B u
     double *influence; // [MOST_HOTSPOTS * rows] B a
+    double *felt;      // [BEAM_MODES * rows] scratch: what laying one does to each row
     double stress_mpa[MOST_HOTSPOTS];
     int32_t hotspots;
 } table;
@@ -28,6 +29,7 @@ static void table_free(jali_context *ctx, table *t)
     release(ctx, t->f);
     release(ctx, t->moved);
     release(ctx, t->influence);
+    release(ctx, t->felt);
 }
 
 static int by_number(const void *a, const void *b)
@@ -175,12 +177,33 @@ static double own_stress(const table *t, int32_t i)
     return sum;
 }
 
+// What a connector takes from F outside its own rows and columns.
+static void take_from_flexibility(table *t, int32_t i)
+{
+    int n = t->beam[i].mode_count;
+    double y[BEAM_MODES], column[BEAM_MODES];
+    for (int32_t q = 0; q < t->rows; q++) {
+        for (int m = 0; m < n; m++) column[m] = t->f[(6 * i + m) * t->rows + q];
+        solve_small(t, i, column, y);
+        for (int m = 0; m < n; m++) t->felt[m * t->rows + q] = q / 6 == i ? 0 : y[m];
+    }
+    for (int32_t p = 0; p < t->rows; p++) {
+        double *row = t->f + p * t->rows;
+        if (p / 6 == i) continue;
+        memcpy(column, row + 6 * i, sizeof column);
+        for (int m = 0; m < n; m++) {
+            const double *felt = t->felt + m * t->rows;
+            for (int32_t q = 0; column[m] != 0 && q < t->rows; q++) row[q] -= column[m] * felt[q];
+        }
+    }
+}
+
 // Lay a connector: what it does to F, and, unless the displacements know of it already, to them and the
 // stresses.
 static void lay(table *t, int32_t i, bool known)
 {
     int n = t->beam[i].mode_count;
-    double y[BEAM_MODES], column[BEAM_MODES];
+    double y[BEAM_MODES];
     if (!known) {
         for (int32_t h = 0; h < t->hotspots; h++) t->stress_mpa[h] -= relief_of(t, i, h);
         for (int32_t h = 0; h < t->hotspots; h++) {
@@ -195,14 +218,7 @@ static void lay(table *t, int32_t i, bool known)
             if (p / 6 != i)
                 for (int m = 0; m < n; m++) t->moved[p] -= t->f[p * t->rows + 6 * i + m] * y[m];
     }
-    for (int32_t q = 0; q < t->rows; q++) { // a column at a time; its own rows last
-        if (q / 6 == i) continue;
-        for (int m = 0; m < n; m++) column[m] = t->f[(6 * i + m) * t->rows + q];
-        solve_small(t, i, column, y);
-        for (int32_t p = 0; p < t->rows; p++)
-            if (p / 6 != i)
-                for (int m = 0; m < n; m++) t->f[p * t->rows + q] -= t->f[p * t->rows + 6 * i + m] * y[m];
-    }
+    take_from_flexibility(t, i);
 }
 
 static int32_t highest(const table *t)
@@ -282,6 +298,7 @@ jali_status rank_spans(jali_context *ctx, structure *s, const jali_sheet *sheet,
     TRY(ALLOCATE_CLEARED(ctx, t.f, (size_t)t.rows * (size_t)t.rows));
     TRY(ALLOCATE_CLEARED(ctx, t.moved, t.rows));
     TRY(ALLOCATE_CLEARED(ctx, t.influence, (size_t)MOST_HOTSPOTS * (size_t)t.rows));
+    TRY(ALLOCATE(ctx, t.felt, BEAM_MODES * (size_t)t.rows));
     t.beam = beams;
     for (int32_t i = 0; i < t.count; i++) {
         if (i < laid_count)

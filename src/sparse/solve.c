@@ -69,20 +69,36 @@ static void backward(const front *d, int count, const double *below, double *x)
     dtrsm_("R", "L", "N", "N", &count, &d->pivots, &ONE, d->panel, &lead, x, &count);
 }
 
-// Between the caller's columns and the order of elimination; `in`: towards it.
-static void carry(const solver *s, int32_t count, bool in, double *by_column, double *x)
+// Between the caller's columns and the order of elimination, a run of positions at a time.
+typedef struct carrying {
+    const solver *s;
+    int32_t count;
+    bool in; // towards the order of elimination
+    double *by_column, *x;
+} carrying;
+
+enum { CARRIED = 2048 };
+
+static void carry_run(void *shared, int32_t run)
 {
-    const elimination *e = &s->order;
-    size_t size = (size_t)unknowns_of(s->a);
-    for (int32_t p = 0; p < s->a->node_count; p++) {
-        int32_t from = s->a->first[e->node[p]];
+    const carrying *c = shared;
+    const elimination *e = &c->s->order;
+    size_t size = (size_t)unknowns_of(c->s->a), count = (size_t)c->count;
+    for (int32_t p = run * CARRIED; p < MIN((run + 1) * CARRIED, c->s->a->node_count); p++) {
+        int32_t from = c->s->a->first[e->node[p]];
         for (int32_t i = e->start[p]; i < e->start[p + 1]; i++, from++)
-            for (int32_t k = 0; k < count; k++) {
-                double *outside = &by_column[(size_t)k * size + (size_t)from];
-                double *inside = &x[(size_t)i * (size_t)count + (size_t)k];
-                *(in ? inside : outside) = *(in ? outside : inside);
+            for (size_t k = 0; k < count; k++) {
+                double *outside = &c->by_column[k * size + (size_t)from];
+                double *inside = &c->x[(size_t)i * count + k];
+                *(c->in ? inside : outside) = *(c->in ? outside : inside);
             }
     }
+}
+
+static void carry(jali_context *ctx, const solver *s, int32_t count, bool in, double *by_column, double *x)
+{
+    carrying c = {s, count, in, by_column, x};
+    parallel(ctx, (s->a->node_count + CARRIED - 1) / CARRIED, carry_run, &c);
 }
 
 // Subtrees are solved side by side, what they take from rows above them kept apart; the fronts above come one
@@ -207,9 +223,9 @@ jali_status solver_solve(jali_context *ctx, solver *s, int32_t count, double *x)
     for (int32_t i = 0; i < count; i += SIDE_BY_SIDE) {
         v.count = MIN(SIDE_BY_SIDE, count - i);
         TRY(step(ctx, "solve", (double)i / count));
-        carry(s, v.count, true, x + (size_t)i * size, v.x);
+        carry(ctx, s, v.count, true, x + (size_t)i * size, v.x);
         solve_together(ctx, &v);
-        carry(s, v.count, false, x + (size_t)i * size, v.x);
+        carry(ctx, s, v.count, false, x + (size_t)i * size, v.x);
     }
     TRY(step(ctx, "solve", 1));
 done:

@@ -1,4 +1,4 @@
-// The stiffness of a sheet, assembled by rows, and its solutions.
+// The stiffness of a sheet, assembled by rows.
 //
 // Nodes are taken in runs along a Morton curve. A run's rows belong to it alone: it computes every triangle
 // that touches its nodes, those on its fringe once more than needed (4 % of them at 4096 nodes a run), and
@@ -11,7 +11,6 @@
 #include <math.h>
 
 enum { RUN = 4096 };
-static const double GOOD_RESIDUAL = 1e-10;
 
 typedef struct assembly {
     structure *s;
@@ -20,25 +19,7 @@ typedef struct assembly {
     int32_t *at;      // [3 * triangle_count]
 } assembly;
 
-void gather_unknowns(const structure *s, const double (*of_node)[NODE_UNKNOWNS], double *x)
-{
-    for (int32_t p = 0; p < s->sheet->node_count; p++) {
-        int32_t node = s->node[p];
-        for (int bit = 0; bit < NODE_UNKNOWNS; bit++)
-            if (s->active[node] >> bit & 1) *x++ = of_node[node][bit];
-    }
-}
-
-void scatter_unknowns(const structure *s, const double *x, double (*of_node)[NODE_UNKNOWNS])
-{
-    for (int32_t p = 0; p < s->sheet->node_count; p++) {
-        int32_t node = s->node[p];
-        for (int bit = 0; bit < NODE_UNKNOWNS; bit++)
-            of_node[node][bit] = s->active[node] >> bit & 1 ? *x++ : 0;
-    }
-}
-
-// The triangles around each node, ascending.
+// Which rows are this process's, and the triangles around each node, ascending.
 static jali_status list_triangles(jali_context *ctx, assembly *a)
 {
     jali_status status;
@@ -75,26 +56,54 @@ static int32_t row_pattern(const assembly *a, int32_t p, int32_t *column)
     return count;
 }
 
+// The columns of a run of rows, each where there is room for two of every triangle and itself.
+typedef struct patterning {
+    const assembly *a;
+    int32_t *column; // [6 * triangle_count + node_count]
+    int32_t *count;  // [node_count]
+} patterning;
+
+static int32_t *columns_of(const patterning *w, int32_t p)
+{
+    return w->column + 2 * (size_t)w->a->first[p] + (size_t)p;
+}
+
+static void find_pattern(void *shared, int32_t run)
+{
+    const patterning *w = shared;
+    for (int32_t p = run * RUN; p < MIN((run + 1) * RUN, w->a->s->sheet->node_count); p++)
+        w->count[p] = row_pattern(w->a, p, columns_of(w, p));
+}
+
+static void keep_pattern(void *shared, int32_t run)
+{
+    const patterning *w = shared;
+    const block_matrix *k = &w->a->s->k;
+    for (int32_t p = run * RUN; p < MIN((run + 1) * RUN, k->node_count); p++)
+        memcpy(k->column + k->row[p], columns_of(w, p), (size_t)w->count[p] * sizeof *k->column);
+}
+
 static jali_status lay_pattern(jali_context *ctx, assembly *a)
 {
     jali_status status;
     structure *s = a->s;
     block_matrix *k = &s->k;
-    int32_t count = s->sheet->node_count, most = 0, *row;
+    int32_t count = s->sheet->node_count, runs = (count + RUN - 1) / RUN;
+    patterning w = {.a = a};
     uint8_t *width;
     k->node_count = count;
-    for (int32_t p = 0; p < count; p++) most = MAX(most, a->first[p + 1] - a->first[p]);
-    TRY(ARENA(ctx, row, 2 * (size_t)most + 1));
+    TRY(ARENA(ctx, w.column, 6 * (size_t)s->sheet->triangle_count + (size_t)count));
+    TRY(ARENA(ctx, w.count, count));
     TRY(ARENA(ctx, width, count));
     TRY(ALLOCATE(ctx, k->row, count + 1));
+    parallel(ctx, runs, find_pattern, &w);
     k->row[0] = 0;
-    for (int32_t p = 0; p < count; p++) k->row[p + 1] = k->row[p] + row_pattern(a, p, row);
-    TRY(ALLOCATE(ctx, k->column, k->row[count]));
     for (int32_t p = 0; p < count; p++) {
-        row_pattern(a, p, row);
-        memcpy(k->column + k->row[p], row, (size_t)(k->row[p + 1] - k->row[p]) * sizeof *row);
+        k->row[p + 1] = k->row[p] + w.count[p];
         width[p] = (uint8_t)__builtin_popcount(s->active[s->node[p]]);
     }
+    TRY(ALLOCATE(ctx, k->column, k->row[count]));
+    parallel(ctx, runs, keep_pattern, &w);
     TRY(block_matrix_lay(ctx, k, width));
 done:
     return status;
@@ -284,77 +293,6 @@ jali_status structure_refactor(jali_context *ctx, structure *s)
 done:
     arena_rewind(ctx, mark);
     return status;
-}
-
-static double length_of(const double *x, int32_t count)
-{
-    double sum = 0;
-    for (int32_t i = 0; i < count; i++) sum += x[i] * x[i];
-    return sqrt(sum);
-}
-
-// One step of iterative refinement where the residual asks for it; the better of the two is kept.
-static jali_status refine(jali_context *ctx, structure *s, const double *b, double *x, double *r, double *y)
-{
-    jali_status status;
-    int32_t count = unknowns_of(&s->k);
-    double whole = length_of(b, count);
-    if (!(whole > 0)) return JALI_OK;
-    TRY(solver_residual(ctx, s->solver, x, b, r));
-    double residual = length_of(r, count) / whole;
-    if (residual > GOOD_RESIDUAL) {
-        memcpy(y, r, (size_t)count * sizeof *y);
-        TRY(solver_solve(ctx, s->solver, 1, y));
-        for (int32_t i = 0; i < count; i++) y[i] += x[i];
-        TRY(solver_residual(ctx, s->solver, y, b, r));
-        double refined = length_of(r, count) / whole;
-        if (refined < residual) {
-            memcpy(x, y, (size_t)count * sizeof *x);
-            residual = refined;
-        }
-    }
-    s->residual = MAX(s->residual, residual);
-done:
-    return status;
-}
-
-// Solve side by side; each refined when `refined`.
-static jali_status solve_all(jali_context *ctx, structure *s, int32_t count, bool refined,
-                             const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS])
-{
-    jali_status status;
-    arena_mark mark = arena_here(ctx);
-    size_t unknowns = (size_t)unknowns_of(&s->k), nodes = (size_t)s->sheet->node_count;
-    double *x, *b, *r, *y;
-    TRY(ARENA(ctx, x, unknowns * (size_t)count));
-    TRY(ARENA(ctx, b, unknowns));
-    TRY(ARENA(ctx, r, unknowns));
-    TRY(ARENA(ctx, y, unknowns));
-    for (size_t i = 0; i < (size_t)count; i++) gather_unknowns(s, load + nodes * i, x + unknowns * i);
-    TRY(solver_solve(ctx, s->solver, count, x));
-    for (size_t i = 0; i < (size_t)count; i++) {
-        if (refined) {
-            gather_unknowns(s, load + nodes * i, b);
-            TRY(refine(ctx, s, b, x + unknowns * i, r, y));
-        }
-        scatter_unknowns(s, x + unknowns * i, u + nodes * i);
-    }
-done:
-    arena_rewind(ctx, mark);
-    return status;
-}
-
-jali_status structure_solve(jali_context *ctx, structure *s, int32_t count,
-                            const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS])
-{
-    s->residual = 0;
-    return solve_all(ctx, s, count, true, load, u);
-}
-
-jali_status structure_influence(jali_context *ctx, structure *s, int32_t count,
-                                const double (*load)[NODE_UNKNOWNS], double (*u)[NODE_UNKNOWNS])
-{
-    return solve_all(ctx, s, count, false, load, u);
 }
 
 void structure_free(jali_context *ctx, structure *s)

@@ -117,7 +117,7 @@ double mean_around(const jali_sheet *sheet, const fans *f, const double *value, 
         sum += integral((const double(*)[2])flat, own, sqrt(square), &area);
         whole += area;
         for (int k = 0; k < 3; k++) {
-            int32_t next = f->beside[3 * t + k];
+            int32_t next = triangle_across(sheet, f, t, k);
             if (next < 0 || count == MOST_NEAR || !reaches(flat[k], flat[(k + 1) % 3], square)) continue;
             bool known = false;
             for (int32_t j = 0; j < count && !known; j++) known = near[j] == next;

@@ -30,7 +30,6 @@ static void list_corners(const jali_sheet *sheet, fans *f)
     f->first[f->node_count] = 3 * sheet->triangle_count;
 }
 
-// The other triangle that has both ends of a side; -1 when there is none, or more than one.
 static int32_t across(const jali_sheet *sheet, const fans *f, int32_t t, int32_t a, int32_t b)
 {
     int32_t found = -1;
@@ -44,13 +43,37 @@ static int32_t across(const jali_sheet *sheet, const fans *f, int32_t t, int32_t
     return found;
 }
 
+int32_t triangle_across(const jali_sheet *sheet, const fans *f, int32_t t, int i)
+{
+    int32_t known = f->beside[3 * t + i];
+    return known == NOT_SOUGHT ? across(sheet, f, t, sheet->triangle[t][i], sheet->triangle[t][(i + 1) % 3])
+                               : known;
+}
+
+void mark_around(const jali_sheet *sheet, const uint8_t *from, uint8_t *to)
+{
+    memset(to, 0, (size_t)sheet->node_count);
+    for (int32_t t = 0; t < sheet->triangle_count; t++) {
+        const int32_t *n = sheet->triangle[t];
+        if (from[n[0]] | from[n[1]] | from[n[2]]) to[n[0]] = to[n[1]] = to[n[2]] = 1;
+    }
+}
+
 // What the passes over blocks of triangles or nodes share.
 typedef struct fan_job {
     const jali_sheet *sheet;
     const double (*normal)[3];
     const double *thickness;
+    const uint8_t *wanted, *around; // [node_count] around: they and their neighbours; NULL: all
     fans *f;
 } fan_job;
+
+// Is a side of the triangle of any fan that is wanted, or next to one?
+static bool is_near(const fan_job *job, int32_t t)
+{
+    const int32_t *n = job->sheet->triangle[t];
+    return !job->around || job->around[n[0]] || job->around[n[1]] || job->around[n[2]];
+}
 
 enum { BLOCK = 1024 };
 
@@ -60,6 +83,10 @@ static void join_sides(void *shared, int32_t block)
     const jali_sheet *sheet = job->sheet;
     for (int32_t t = block * BLOCK; t < MIN((block + 1) * BLOCK, sheet->triangle_count); t++)
         for (int i = 0; i < 3; i++) {
+            if (!is_near(job, t)) {
+                job->f->beside[3 * t + i] = NOT_SOUGHT;
+                continue;
+            }
             int32_t o = across(sheet, job->f, t, sheet->triangle[t][i], sheet->triangle[t][(i + 1) % 3]);
             job->f->beside[3 * t + i] = o;
             if (o < 0) continue;
@@ -95,6 +122,11 @@ static void mark_fans(void *shared, int32_t block)
     fans *f = job->f;
     for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, f->node_count); n++) {
         int32_t count = 0;
+        if (job->wanted && !job->wanted[n]) {
+            for (int32_t i = f->first[n]; i < f->first[n + 1]; i++) f->fan[f->corner[i]] = 0;
+            f->first_fan[n + 1] = f->first[n] < f->first[n + 1];
+            continue;
+        }
         for (int32_t i = f->first[n]; i < f->first[n + 1]; i++) f->fan[f->corner[i]] = -1;
         for (int32_t i = f->first[n]; i < f->first[n + 1]; i++)
             if (f->fan[f->corner[i]] < 0) mark_fan(job->sheet, f, f->corner[i], count++);
@@ -121,9 +153,10 @@ static void number_fans(jali_context *ctx, fan_job *job)
 }
 
 jali_status fans_of(jali_context *ctx, const jali_sheet *sheet, const double (*normal)[3],
-                    const double *thickness, fans *f)
+                    const double *thickness, const uint8_t *wanted, fans *f)
 {
     jali_status status;
+    uint8_t *around = NULL;
     *f = (fans){.node_count = sheet->node_count};
     if (sheet->triangle_count > INT32_MAX / 3)
         return fail(ctx, JALI_LIMIT, "a sheet of %d triangles; at most %d fit", sheet->triangle_count,
@@ -136,10 +169,15 @@ jali_status fans_of(jali_context *ctx, const jali_sheet *sheet, const double (*n
     TRY(ALLOCATE(ctx, f->fan, corners));
     TRY(ALLOCATE(ctx, f->first_fan, nodes + 1));
     list_corners(sheet, f);
-    fan_job job = {sheet, normal, thickness, f};
+    if (wanted) {
+        TRY(ALLOCATE(ctx, around, nodes));
+        mark_around(sheet, wanted, around);
+    }
+    fan_job job = {sheet, normal, thickness, wanted, around, f};
     parallel(ctx, (sheet->triangle_count + BLOCK - 1) / BLOCK, join_sides, &job);
     number_fans(ctx, &job);
 done:
+    release(ctx, around);
     if (status != JALI_OK) fans_free(ctx, f);
     return status;
 }

@@ -44,7 +44,7 @@ typedef struct recovering {
     fans fans;
     double *worst; // [fan_count]
     double *peak;  // [node_count] the worst of a node's triangles
-    double quiet;  // below this no patch is fitted
+    uint8_t *loud; // [node_count] a patch is fitted: its triangles, or one that touches these, are not quiet
     double radius_mm;
     stresses *out;
 } recovering;
@@ -116,26 +116,21 @@ static void evaluate_block(void *shared, int32_t block)
     }
 }
 
-static void peak_block(void *shared, int32_t block)
+// Patches are fitted where a triangle nearby has that share of the worst: `loud`.
+static void find_loud(recovering *r, double share, uint8_t *touched)
 {
-    recovering *r = shared;
-    const fans *f = &r->fans;
-    for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, f->node_count); n++) {
-        r->peak[n] = 0;
-        for (int32_t i = f->first[n]; i < f->first[n + 1]; i++)
-            r->peak[n] = MAX(r->peak[n], r->state[f->corner[i] / 3].worst);
-    }
-}
-
-// Are all triangles that touch the node's own ones quiet?
-static bool is_quiet(const recovering *r, int32_t node)
-{
-    const fans *f = &r->fans;
-    if (r->quiet == 0) return false;
-    for (int32_t i = f->first[node]; i < f->first[node + 1]; i++)
-        for (int k = 0; k < 3; k++)
-            if (r->peak[r->sheet->triangle[f->corner[i] / 3][k]] >= r->quiet) return false;
-    return true;
+    const jali_sheet *sheet = r->sheet;
+    double worst = 0;
+    for (int32_t t = 0; t < sheet->triangle_count; t++) worst = MAX(worst, r->state[t].worst);
+    memset(r->peak, 0, (size_t)sheet->node_count * sizeof *r->peak);
+    memset(touched, 0, (size_t)sheet->node_count);
+    for (int32_t t = 0; t < sheet->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            int32_t n = sheet->triangle[t][k];
+            r->peak[n] = MAX(r->peak[n], r->state[t].worst);
+            touched[n] |= r->state[t].worst >= share * worst;
+        }
+    mark_around(sheet, touched, r->loud);
 }
 
 static bool is_among(int32_t count, const int32_t *list, int32_t wanted)
@@ -284,7 +279,7 @@ static void recover_block(void *shared, int32_t block)
     const fans *f = &r->fans;
     for (int32_t node = block * BLOCK; node < MIN((block + 1) * BLOCK, f->node_count); node++) {
         double worst = 0;
-        if (is_quiet(r, node)) {
+        if (r->loud && !r->loud[node]) {
             for (int32_t fan = f->first_fan[node]; fan < f->first_fan[node + 1]; fan++)
                 r->worst[fan] = r->peak[node];
             r->out->worst[node] = r->peak[node];
@@ -315,7 +310,7 @@ static void average_block(void *shared, int32_t block)
 {
     recovering *r = shared;
     for (int32_t n = block * BLOCK; n < MIN((block + 1) * BLOCK, r->fans.node_count); n++)
-        r->out->mean[n] = r->radius_mm > 0 && !is_quiet(r, n)
+        r->out->mean[n] = r->radius_mm > 0 && (!r->loud || r->loud[n])
                               ? mean_around(r->sheet, &r->fans, r->worst, n, r->radius_mm)
                               : r->out->worst[n];
 }
@@ -351,6 +346,7 @@ static jali_status recover(jali_context *ctx, const jali_sheet *sheet, const fac
                            const double (*u)[6], double disc_mm, double quiet_share, stresses *s)
 {
     jali_status status;
+    uint8_t *touched = NULL;
     size_t nodes = (size_t)sheet->node_count, triangles = (size_t)sheet->triangle_count;
     int32_t node_blocks = (sheet->node_count + BLOCK - 1) / BLOCK;
     recovering r = {.sheet = sheet, .made_of = made_of, .u = u, .radius_mm = 0.5 * disc_mm, .out = s};
@@ -365,12 +361,14 @@ static jali_status recover(jali_context *ctx, const jali_sheet *sheet, const fac
     TRY(ALLOCATE(ctx, r.thickness, triangles));
     parallel(ctx, (sheet->triangle_count + BLOCK - 1) / BLOCK, evaluate_block, &r);
     TRY(step(ctx, "stress", 0.3));
-    TRY(fans_of(ctx, sheet, (const double(*)[3])r.normal, r.thickness, &r.fans));
+    if (quiet_share > 0) {
+        TRY(ALLOCATE(ctx, r.peak, nodes));
+        TRY(ALLOCATE(ctx, r.loud, nodes));
+        TRY(ALLOCATE(ctx, touched, nodes));
+        find_loud(&r, quiet_share, touched);
+    }
+    TRY(fans_of(ctx, sheet, (const double(*)[3])r.normal, r.thickness, r.loud, &r.fans));
     TRY(ALLOCATE(ctx, r.worst, r.fans.fan_count));
-    TRY(ALLOCATE(ctx, r.peak, nodes));
-    for (int32_t t = 0; t < sheet->triangle_count; t++)
-        r.quiet = MAX(r.quiet, quiet_share * r.state[t].worst);
-    if (r.quiet > 0) parallel(ctx, node_blocks, peak_block, &r);
     parallel(ctx, node_blocks, recover_block, &r);
     TRY(step(ctx, "stress", 0.7));
     parallel(ctx, node_blocks, average_block, &r);
@@ -381,6 +379,8 @@ done:
     release(ctx, r.thickness);
     release(ctx, r.worst);
     release(ctx, r.peak);
+    release(ctx, r.loud);
+    release(ctx, touched);
     fans_free(ctx, &r.fans);
     if (status != JALI_OK) stresses_free(ctx, s);
     return status;
