@@ -113,12 +113,21 @@ typedef struct solving {
     double *above;  // [tallest * count] below, for the fronts above
 } solving;
 
+static bool all_zero(const double *x, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (x[i] != 0) return false;
+    return true;
+}
+
+// Where right sides are zero so far, nothing is to be done: loads at a few places leave most fronts alone.
 static void forward_front(const solving *v, int32_t f, double *below, int32_t root, double *account)
 {
     const elimination *e = &v->s->order;
     front d = front_of(v->s, f);
-    if (d.pivots == 0) return;
-    forward(&d, v->count, v->x + (size_t)e->start[e->first[f]] * (size_t)v->count, below);
+    double *x = v->x + (size_t)e->start[e->first[f]] * (size_t)v->count;
+    if (all_zero(x, (size_t)d.pivots * (size_t)v->count)) return;
+    forward(&d, v->count, x, below);
     spread(e, f, v->count, below, v->x, root < 0 ? INT32_MAX : e->first[root + 1],
            root < 0 ? NULL : e->below + e->row[root], account);
 }

@@ -318,18 +318,17 @@ done:
     return status;
 }
 
-// Right sides of all cases, side by side: x = f + P (g - S y) from the displacements without bridges.
+// What the bridges do in all cases, side by side: x = P (g - S y) from the displacements without them.
 static void pull_all(attachments *a, const coupling *m, int32_t count, bool loaded,
-                     const double (*load)[NODE_UNKNOWNS], const double (*base)[NODE_UNKNOWNS], const desk *w,
-                     double *x)
+                     const double (*base)[NODE_UNKNOWNS], const desk *w, double *x)
 {
     size_t unknowns = (size_t)unknowns_of(&a->s->k), nodes = (size_t)a->s->sheet->node_count;
     for (int32_t k = 0; k < count; k++) {
         double *here = x + unknowns * (size_t)k;
-        gather_unknowns(a->s, base + nodes * (size_t)k, here);
-        pull(a, m, loaded ? k : -1, here, w->y, w->v);
-        gather_unknowns(a->s, load + nodes * (size_t)k, here);
-        for (int32_t i = 0; i < a->rank; i++) here[a->row[i]] += w->v[i];
+        gather_unknowns(a->s, base + nodes * (size_t)k, w->d);
+        pull(a, m, loaded ? k : -1, w->d, w->y, w->v);
+        memset(here, 0, unknowns * sizeof *here);
+        for (int32_t i = 0; i < a->rank; i++) here[a->row[i]] = w->v[i];
     }
 }
 
@@ -351,10 +350,12 @@ jali_status attached_solve(jali_context *ctx, attachments *a, int32_t count,
     TRY(ARENA(ctx, w.d, unknowns));
     TRY(ARENA(ctx, w.y, a->rank));
     TRY(ARENA(ctx, w.v, a->rank));
-    pull_all(a, &m, count, loaded, load, base, &w, x);
+    pull_all(a, &m, count, loaded, base, &w, x);
     TRY(solver_solve(ctx, a->s->solver, count, x));
     for (int32_t k = 0; k < count; k++) {
         w.x = x + unknowns * (size_t)k;
+        gather_unknowns(a->s, base + nodes * (size_t)k, w.d);
+        for (size_t i = 0; i < unknowns; i++) w.x[i] += w.d[i];
         if (loaded && !a->rough) {
             gather_unknowns(a->s, load + nodes * (size_t)k, w.f);
             TRY(refine(ctx, a, &m, k, &w));
