@@ -1,6 +1,7 @@
 // The structures' solver: solutions and inverses against products, over random structures.
 #include "testing.h"
 
+#include "sparse/dense.h"
 #include "sparse/solver.h"
 
 #include <math.h>
@@ -372,6 +373,41 @@ TEST(every_allocation_may_fail)
     refuse_each_allocation(solve_once, NULL);
 }
 
+// Sizes around the tiles' width; a system that needs its pivots, solved for x = 1, 2, 3 ...
+TEST(dense_systems_by_tiles_are_solved_alike_by_any_number_of_threads)
+{
+    const int32_t sizes[] = {1, 63, 64, 65, 200};
+    jali_context *by_threads[3];
+    open_thread_contexts(by_threads);
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        size_t n = (size_t)sizes[k];
+        uint64_t seed = 5 + k;
+        double *a = malloc(n * n * sizeof *a), *b = malloc(n * sizeof *b), *x = malloc(n * sizeof *x);
+        double *first = malloc(n * n * sizeof *first), *factor = malloc(n * n * sizeof *factor);
+        int32_t *pivot = malloc(n * sizeof *pivot);
+        for (size_t i = 0; i < n; i++) {
+            b[i] = 0;
+            for (size_t j = 0; j < n; j++) {
+                a[i * n + j] = i == j && n > 1 ? 0 : random_in(&seed, -1, 1);
+                b[i] += a[i * n + j] * (double)(j + 1);
+            }
+        }
+        for (int t = 0; t < 4; t++) { // the last one without a context
+            memcpy(factor, a, n * n * sizeof *a);
+            CHECK(lu(t < 3 ? by_threads[t] : NULL, sizes[k], factor, pivot));
+            if (t == 0) memcpy(first, factor, n * n * sizeof *a);
+            CHECK(memcmp(first, factor, n * n * sizeof *a) == 0);
+        }
+        memcpy(x, b, n * sizeof *b);
+        lu_solve(sizes[k], factor, pivot, 1, x);
+        for (size_t i = 0; i < n; i++) CHECK(fabs(x[i] - (double)(i + 1)) < 1e-8);
+        memset(a, 0, n * n * sizeof *a);
+        CHECK(!lu(by_threads[1], sizes[k], a, pivot));
+        free(a), free(b), free(x), free(first), free(factor), free(pivot);
+    }
+    close_thread_contexts(by_threads);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -382,6 +418,7 @@ int main(void)
         cmocka_unit_test(held_nodes_lonely_ones_and_many_pieces_are_solved),
         cmocka_unit_test(threads_at_once_give_the_same_bytes),
         cmocka_unit_test(the_order_keeps_the_factor_small),
+        cmocka_unit_test(dense_systems_by_tiles_are_solved_alike_by_any_number_of_threads),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);

@@ -14,10 +14,11 @@ bool cholesky(int32_t n, double *a);
 void cholesky_solve(int32_t n, const double *l, int32_t columns, double *b);
 
 /// A = L U P with the largest pivot of each row.
+///   in     ctx      the threads to share the work of a large system; NULL: the caller's own
 ///   inout  a        [n][n]
 ///   out    pivot    [n] for lu_solve
 ///          false: singular
-bool lu(int32_t n, double *a, int32_t *pivot);
+bool lu(jali_context *ctx, int32_t n, double *a, int32_t *pivot);
 
 /// Solve A X = B.
 ///   inout  b   [n][columns]

@@ -225,7 +225,7 @@ jali_status couple(jali_context *ctx, attachments *a, coupling *m)
     TRY(ALLOCATE(ctx, a->coupled.matrix, (size_t)a->rank * (size_t)a->rank));
     TRY(ALLOCATE(ctx, a->coupled.pivot, a->rank));
     TRY(fill_coupling(ctx, a, a->coupled.matrix));
-    if (!lu(a->rank, a->coupled.matrix, a->coupled.pivot))
+    if (!lu(ctx, a->rank, a->coupled.matrix, a->coupled.pivot))
         TRY(fail(ctx, JALI_NO_RESULT, "bridges at %d unknowns cannot be joined: their system is singular",
                  a->rank));
     a->stands = true;

@@ -95,7 +95,7 @@ static jali_status judge(jali_context *ctx, const trial *t, int32_t of_case, con
     }
     add_product(c->rank, c->rank, c->rank, t->flexibility, rank, c->stiffness, rank, matrix, rank);
     add_product(c->rank, c->rank, 1, t->flexibility, rank, g, 1, y, 1);
-    if (!lu(c->rank, matrix, pivot)) goto done; // it would pull infinitely: worth nothing
+    if (!lu(NULL, c->rank, matrix, pivot)) goto done; // it would pull infinitely: worth nothing
     lu_solve(c->rank, matrix, pivot, 1, y);
     for (size_t i = 0; i < rank; i++) {
         double pull = g[i];
