@@ -19,11 +19,8 @@ static int32_t paint_bridge(const jali_bridges *bridges, int32_t i, const field 
     int32_t from[2], to[2], covered = 0;
     for (int32_t leg = 0; jali_bridge_leg(bridges, i, leg, from, to); leg++) {
         line_walk walk = walk_line(from, to);
-        do {
-            const patch *p = patch_at(brush, walk.x, walk.y);
-            covered += count_patch(dst, walk.x, walk.y, p, false);
-            paint_patch(dst, walk.x, walk.y, p, true);
-        } while (walk_on(&walk));
+        do covered += cover_patch(dst, walk.x, walk.y, patch_at(brush, walk.x, walk.y));
+        while (walk_on(&walk));
     }
     return covered;
 }

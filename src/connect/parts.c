@@ -64,7 +64,19 @@ static void extend_box(int32_t box[4], int32_t y, int32_t x0, int32_t x1)
     box[3] = MAX(box[3], y + 1);
 }
 
-jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y)
+// Along its row a bridge's run grows.
+static bool extend_last_run(parts *p, int32_t root, int32_t label, int32_t x, int32_t y)
+{
+    int32_t last = p->tail[root];
+    struct part_run *run = &p->run[last];
+    if (last < p->c.run_count || run->y != y || run->label != label) return false;
+    if (x != run->x1 && x != run->x0 - 1) return false;
+    run->x0 = MIN(run->x0, x);
+    run->x1 = MAX(run->x1, x + 1);
+    return true;
+}
+
+static jali_status add_run(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y)
 {
     jali_status status = GROW(ctx, p->run, p->run_capacity, p->run_count + 1);
     if (status != JALI_OK) return status;
@@ -73,6 +85,14 @@ jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t la
     p->row_bridge[y] = i;
     p->run[p->tail[root]].next = i;
     p->tail[root] = i;
+    return JALI_OK;
+}
+
+jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y)
+{
+    jali_status status = JALI_OK;
+    if (!extend_last_run(p, root, label, x, y)) status = add_run(ctx, p, root, label, x, y);
+    if (status != JALI_OK) return status;
     p->area[root]++;
     extend_box(p->box[root], y, x, x + 1);
     return JALI_OK;

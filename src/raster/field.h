@@ -44,6 +44,8 @@ bool patch_as_wide(const patch *p, const ellipse *e);
 void patch_free(jali_context *ctx, patch *p);
 
 void paint_patch(jali_bitmap *dst, int32_t x, int32_t y, const patch *brush, bool white);
+/// Paint it white; returns how many of its pixels were black.
+int32_t cover_patch(jali_bitmap *dst, int32_t x, int32_t y, const patch *brush);
 /// How many pixels of a tone lie under the patch set on (x, y); none beyond the bitmap's border.
 int32_t count_patch(const jali_bitmap *a, int32_t x, int32_t y, const patch *p, bool white);
 

@@ -8,10 +8,8 @@ void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white)
 {
     uint64_t *row = dst->word + (int64_t)y * dst->stride;
     for (int32_t i = x0 >> 6; i <= (x1 - 1) >> 6; i++) {
-        uint64_t mask = ~UINT64_C(0);
-        if (i == x0 >> 6) mask &= ~UINT64_C(0) << (x0 & 63);
-        if (i == (x1 - 1) >> 6) mask &= ~UINT64_C(0) >> (63 - ((x1 - 1) & 63));
-        row[i] = white ? row[i] | mask : row[i] & ~mask;
+        uint64_t columns = columns_of_word(i, x0, x1);
+        row[i] = white ? row[i] | columns : row[i] & ~columns;
     }
 }
 

@@ -186,13 +186,40 @@ void paint_patch(jali_bitmap *dst, int32_t x, int32_t y, const patch *brush, boo
             paint_run(dst, y + brush->top + k, span[0], span[1], white);
 }
 
-int32_t count_patch(const jali_bitmap *a, int32_t x, int32_t y, const patch *p, bool white)
+VECTORISED static int32_t count_rows(const jali_bitmap *a, int32_t x, int32_t y, const patch *p,
+                                     uint64_t flip)
 {
     int32_t count = 0, span[2];
     for (int32_t k = 0; k < p->rows; k++) {
         if (!row_inside(a, x, y, p, k, span)) continue;
-        int32_t found = count_run(a, y + p->top + k, span[0], span[1]);
-        count += white ? found : span[1] - span[0] - found;
+        const uint64_t *row = a->word + (int64_t)(y + p->top + k) * a->stride;
+        for (int32_t i = span[0] >> 6; i <= (span[1] - 1) >> 6; i++)
+            count += __builtin_popcountll((row[i] ^ flip) & columns_of_word(i, span[0], span[1]));
     }
     return count;
+}
+
+int32_t count_patch(const jali_bitmap *a, int32_t x, int32_t y, const patch *p, bool white)
+{
+    return count_rows(a, x, y, p, white ? 0 : ~UINT64_C(0));
+}
+
+VECTORISED static int32_t cover_rows(jali_bitmap *dst, int32_t x, int32_t y, const patch *p)
+{
+    int32_t covered = 0, span[2];
+    for (int32_t k = 0; k < p->rows; k++) {
+        if (!row_inside(dst, x, y, p, k, span)) continue;
+        uint64_t *row = dst->word + (int64_t)(y + p->top + k) * dst->stride;
+        for (int32_t i = span[0] >> 6; i <= (span[1] - 1) >> 6; i++) {
+            uint64_t columns = columns_of_word(i, span[0], span[1]);
+            covered += __builtin_popcountll(~row[i] & columns);
+            row[i] |= columns;
+        }
+    }
+    return covered;
+}
+
+int32_t cover_patch(jali_bitmap *dst, int32_t x, int32_t y, const patch *brush)
+{
+    return cover_rows(dst, x, y, brush);
 }

@@ -140,6 +140,15 @@ void components_free(jali_context *ctx, components *c);
 int32_t run_at(const components *c, int32_t x, int32_t y);
 /// area[label] = pixels.
 jali_status component_areas(jali_context *ctx, const components *c, int64_t **area);
+/// Those of the columns x0 .. x1-1 that lie in word i of a row; some do.
+static inline uint64_t columns_of_word(int32_t i, int32_t x0, int32_t x1)
+{
+    uint64_t columns = ~UINT64_C(0);
+    if (i == x0 >> 6) columns &= ~UINT64_C(0) << (x0 & 63);
+    if (i == (x1 - 1) >> 6) columns &= ~UINT64_C(0) >> (63 - ((x1 - 1) & 63));
+    return columns;
+}
+
 /// Set the run's pixels in dst.
 void paint_run(jali_bitmap *dst, int32_t y, int32_t x0, int32_t x1, bool white);
 /// White pixels in the row's columns x0 .. x1-1.

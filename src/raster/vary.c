@@ -86,15 +86,6 @@ static jali_status pad_source(jali_context *ctx, const jali_bitmap *src, uint64_
     return measure_depth(ctx, rows, v);
 }
 
-// The columns x0 .. x1-1 as bits of the word that begins at column 64 i.
-static uint64_t columns_of_word(int32_t x0, int32_t x1, int32_t i)
-{
-    uint64_t mask = ~UINT64_C(0);
-    if (x0 > 64 * i) mask &= ~UINT64_C(0) << (x0 - 64 * i);
-    if (x1 < 64 * i + 64) mask &= ~UINT64_C(0) >> (64 * i + 64 - x1);
-    return mask;
-}
-
 // The pixels of a row from column x on, 128 of them.
 static wide window_from(const uint64_t *row, int32_t x)
 {
@@ -250,7 +241,7 @@ static void erode_span(const varying *v, const patch *p, int32_t x0, int32_t x1,
     for (int32_t i = x0 >> 6; i <= (x1 - 1) >> 6; i++) {
         uint64_t fits[MOST_TILE_ROWS], any = 0, *out = v->dst->word + (int64_t)y0 * v->dst->stride + i;
         for (int32_t y = y0; y < y1; y++) {
-            uint64_t *row = &fits[y - y0], here = columns_of_word(x0, x1, i);
+            uint64_t *row = &fits[y - y0], here = columns_of_word(i, x0, x1);
             if (v->f->own_pixel) here &= padded_row(v, y)[i];
             if (!marks(v, v->active, y, i)) here = 0;
             bool decided = !here || is_deep(v, p, y, i);
@@ -292,7 +283,7 @@ static void dilate_row(const varying *v, int32_t source, int32_t y0, int32_t y1)
         int32_t x0 = i ? i * t->tile_px : -beyond;
         int32_t x1 = end < t->columns ? end * t->tile_px : t->width_px + beyond;
         for (int32_t w = x0 >> 6; w <= (x1 - 1) >> 6; w++) {
-            uint64_t bits = row[w] & columns_of_word(x0, x1, w);
+            uint64_t bits = row[w] & columns_of_word(w, x0, x1);
             if (!bits || !marks(v, v->sources, source, w)) continue;
             if (w >= 0 && w < v->dst->stride && is_deep(v, p, source, w)) { // it paints what is set anyway
                 if (source >= y0 && source < y1 && marks(v, v->active, source, w))
