@@ -1,9 +1,9 @@
 // A small part grows in a window of its bounding box and a rim until it meets another; a rim that is too
-// narrow is made four times as wide.
+// narrow is made wider.
 #include "connect/search.h"
 #include "base/base.h"
 
-enum { MOST_NEAR_RIM_PX = 224, MOST_NEAR_WORDS = 1 << 13 };
+enum { MOST_NEAR_RIM_PX = 448, MOST_NEAR_WORDS = 1 << 14 };
 
 static window first_window(const jali_bitmap *solid, const parts *p, int32_t root)
 {
@@ -41,12 +41,12 @@ static jali_status go_on(jali_context *ctx, const jali_bitmap *solid, const part
             *found = true;
             return JALI_OK;
         }
-        if (s->rim > most_rim / RIM_TIMES) return JALI_OK;
+        if (s->rim >= MIN(most_rim, longest)) return JALI_OK;
         window narrow = w;
-        w = window_around(solid, p->box[root], s->rim * RIM_TIMES);
+        s->rim = wider_rim(s->rim);
+        w = window_around(solid, p->box[root], s->rim);
         TRY(widen(ctx, &narrow, &w, &s->g));
         TRY(make_room(ctx, &w, &s->g));
-        s->rim *= RIM_TIMES;
     }
 done:
     return status;
@@ -76,7 +76,7 @@ jali_status make_room_near(jali_context *ctx, const jali_bitmap *solid, const pa
     jali_status status;
     window first = first_window(solid, p, root), near = first;
     s->near_rim = 0;
-    for (int32_t rim = FIRST_RIM_PX; rim <= MOST_NEAR_RIM_PX; rim *= RIM_TIMES) {
+    for (int32_t rim = FIRST_RIM_PX; rim <= MOST_NEAR_RIM_PX; rim = wider_rim(rim)) {
         window wider = window_around(solid, p->box[root], rim);
         if (word_count(&wider) > MOST_NEAR_WORDS) break;
         near = wider;

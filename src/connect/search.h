@@ -4,7 +4,13 @@
 
 #include "connect/grow.h"
 
-enum { FIRST_RIM_PX = 14, RIM_TIMES = 4 };
+enum { FIRST_RIM_PX = 14, SECOND_RIM_PX = 56 };
+
+/// The rim after one that was too narrow: twice as wide, for a window's pixels grow with its square.
+static inline int32_t wider_rim(int32_t rim_px)
+{
+    return rim_px < SECOND_RIM_PX ? SECOND_RIM_PX : 2 * rim_px;
+}
 
 /// Scratch of the search. {0} is valid and empty.
 typedef struct search {

@@ -8,7 +8,7 @@
 #include "connect/slices.h"
 #include "base/base.h"
 
-enum { LARGE_WORDS = 1 << 11, LEAST_ROWS = 96, RIM_PX = 56 };
+enum { LARGE_WORDS = 1 << 11, LEAST_ROWS = 96 };
 
 typedef struct slice_search {
     jali_context *ctx;
@@ -107,7 +107,7 @@ jali_status nearest_by_slices(jali_context *ctx, const jali_bitmap *solid, const
 {
     jali_status status;
     const slice *nearest = NULL;
-    slice_search t = {.ctx = ctx, .solid = solid, .metric = metric, .s = s, .rim = RIM_PX};
+    slice_search t = {.ctx = ctx, .solid = solid, .metric = metric, .s = s, .rim = SECOND_RIM_PX};
     t.least = INT32_MAX;
     t.whole = window_around(solid, p->box[root], 0);
     s->count = slices_of(ctx, p, root);
@@ -118,7 +118,7 @@ jali_status nearest_by_slices(jali_context *ctx, const jali_bitmap *solid, const
         parallel(ctx, s->count, search_slice, &t);
         if ((nearest = nearest_met(s))) break;
         if (stopping(ctx)) TRY(step(ctx, "connect", 0));
-        t.rim *= RIM_TIMES;
+        t.rim = wider_rim(t.rim);
         for (int32_t i = 0; i < s->count; i++) TRY(widen_slice(&t, &s->each[i]));
     }
     memcpy(bridge->to, nearest->to, sizeof bridge->to);
