@@ -75,14 +75,12 @@ static jali_status ask_for(ahead *a, int32_t root, int32_t laid, int32_t *place)
 static jali_status ask_for_next(ahead *a, int32_t root, int32_t laid, int32_t free_places)
 {
     jali_status status;
-    int32_t next[AHEAD], count = 0, place = 0;
+    int32_t next[AHEAD], place = 0;
     a->asked_count = 0;
     TRY(ask_for(a, root, laid, &place));
-    while (count < free_places - 1 && smallest_part(a->p, &next[count])) count++;
-    for (int32_t i = 0; i < count; i++) {
-        TRY(queue_part(a->ctx, a->p, next[i]));
+    int32_t count = next_parts(a->p, free_places - 1, next);
+    for (int32_t i = 0; i < count; i++)
         if (!foresight_of(a, next[i])) TRY(ask_for(a, next[i], laid, &place));
-    }
 done:
     return status;
 }

@@ -32,14 +32,40 @@ static struct part_key pop(parts *p)
     return top;
 }
 
+static bool is_stale(const parts *p, const struct part_key *key)
+{
+    return p->parent[key->root] != key->root || p->area[key->root] != key->area;
+}
+
 bool smallest_part(parts *p, int32_t *root)
 {
-    while (p->heap_count > 0) {
-        struct part_key key = pop(p);
+    while (p->front_count + p->heap_count > 0) {
+        bool in_front =
+            p->front_count > 0 && (p->heap_count == 0 || before(&p->front[p->front_count - 1], &p->heap[0]));
+        struct part_key key = in_front ? p->front[--p->front_count] : pop(p);
         *root = key.root;
-        if (p->parent[key.root] == key.root && p->area[key.root] == key.area) return true;
+        if (!is_stale(p, &key)) return true;
     }
     return false;
+}
+
+static void put_in_front(parts *p, struct part_key key)
+{
+    int32_t i = p->front_count++;
+    for (; i > 0 && before(&p->front[i - 1], &key); i--) p->front[i] = p->front[i - 1];
+    p->front[i] = key;
+}
+
+int32_t next_parts(parts *p, int32_t most, int32_t *root)
+{
+    int32_t count = 0;
+    while (p->front_count < MIN(most, MOST_IN_FRONT) && p->heap_count > 0) {
+        struct part_key key = pop(p);
+        if (!is_stale(p, &key)) put_in_front(p, key);
+    }
+    for (int32_t i = p->front_count - 1; i >= 0 && count < most; i--)
+        if (!is_stale(p, &p->front[i])) root[count++] = p->front[i].root;
+    return count;
 }
 
 int32_t label_at(const parts *p, int32_t x, int32_t y)

@@ -4,6 +4,8 @@
 
 #include "raster/raster.h"
 
+enum { MOST_IN_FRONT = 16 };
+
 /// A part is a set of runs with one root; runs of laid bridges are appended to those of the picture.
 typedef struct parts {
     components c;         // the picture's runs and the labels they began with
@@ -18,12 +20,13 @@ typedef struct parts {
         int32_t y, x0, x1, next, label, below;
     } * run;             // below: next bridge run in the same row
     int32_t *row_bridge; // [height], first bridge run of the row or -1
-    int32_t heap_count;
+    int32_t heap_count, front_count;
     size_t heap_capacity;
     struct part_key {
         int64_t area;
         int32_t root;
-    } * heap; // smallest area first; stale entries are skipped
+    } * heap;                             // smallest area first; stale entries are skipped
+    struct part_key front[MOST_IN_FRONT]; // of the queue, taken out of the heap already; the smallest last
 } parts;
 
 jali_status parts_create(jali_context *ctx, const jali_bitmap *drawing, parts *p);
@@ -34,6 +37,8 @@ int32_t label_at(const parts *p, int32_t x, int32_t y);
 int32_t root_of_label(parts *p, int32_t label);
 /// Take the smallest part (by area, then by label) out of the queue; false: none is left there.
 bool smallest_part(parts *p, int32_t *root);
+/// Those that come next if nothing changes, `most` at most, and stay in the queue; returns how many.
+int32_t next_parts(parts *p, int32_t most, int32_t *root);
 /// Give a part a bridge pixel.
 jali_status part_add_pixel(jali_context *ctx, parts *p, int32_t root, int32_t label, int32_t x, int32_t y);
 /// Make two parts one; returns the root.
