@@ -17,6 +17,11 @@ enum {
     BENDING = 4 + 8 + 16 // the unknowns of a flat plate under transverse load: w, rotation about x and y
 };
 
+/// Above such a residual |f - K u| / |f| one step of refinement follows. A good factor's is what rounding K u
+/// leaves, 1.2e-10 on 170 k nodes and 2.8e-10 on 420 k; refinement, which costs as much as the solution,
+/// takes no more than a third off that.
+static const double GOOD_RESIDUAL = 1e-9;
+
 /// {0} is valid and empty. The sheet must live as long.
 typedef struct structure {
     const jali_sheet *sheet;

@@ -10,8 +10,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double GOOD_RESIDUAL = 1e-10;
-
 void attachments_begin(attachments *a, structure *s, int32_t case_count)
 {
     *a = (attachments){.s = s, .case_count = case_count};

@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-static const double GOOD_RESIDUAL = 1e-10;
-
 void gather_unknowns(const structure *s, const double (*of_node)[NODE_UNKNOWNS], double *x)
 {
     for (int32_t p = 0; p < s->sheet->node_count; p++) {
