@@ -85,6 +85,8 @@ static inline int32_t unknown_at(const structure *s, int32_t node, int bit)
 /// Between nodes' and system's order: one right side. What is held is dropped, and comes back as 0.
 void gather_unknowns(const structure *s, const double (*of_node)[NODE_UNKNOWNS], double *x);
 void scatter_unknowns(const structure *s, const double *x, double (*of_node)[NODE_UNKNOWNS]);
+/// The Euclidean length of a right side or a residual.
+double length_of_unknowns(const double *x, int32_t count);
 
 /// Number the nodes along a Morton curve through their places, so that neighbours in the sheet are neighbours
 /// in memory.

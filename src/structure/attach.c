@@ -260,13 +260,6 @@ static void pull(const attachments *a, const coupling *m, int32_t of_case, const
     bridge_forces(a, of_case, y, v);
 }
 
-static double length_of(const double *x, int32_t count)
-{
-    double sum = 0;
-    for (int32_t i = 0; i < count; i++) sum += x[i] * x[i];
-    return sqrt(sum);
-}
-
 // Scratch of a solution.
 typedef struct desk {
     double *f, *x, *r, *d; // [unknowns]
@@ -279,12 +272,12 @@ static jali_status joint_residual(jali_context *ctx, attachments *a, int32_t of_
 {
     jali_status status;
     int32_t count = unknowns_of(&a->s->k);
-    double whole = length_of(w->f, count);
+    double whole = length_of_unknowns(w->f, count);
     for (int32_t i = 0; i < a->rank; i++) w->y[i] = x[a->row[i]];
     bridge_forces(a, of_case, w->y, w->v);
     TRY(solver_residual(ctx, a->s->solver, x, w->f, w->r));
     for (int32_t i = 0; i < a->rank; i++) w->r[a->row[i]] += w->v[i];
-    *residual = whole > 0 ? length_of(w->r, count) / whole : 0;
+    *residual = whole > 0 ? length_of_unknowns(w->r, count) / whole : 0;
 done:
     return status;
 }

@@ -23,7 +23,7 @@ void scatter_unknowns(const structure *s, const double *x, double (*of_node)[NOD
     }
 }
 
-static double length_of(const double *x, int32_t count)
+double length_of_unknowns(const double *x, int32_t count)
 {
     double sum = 0;
     for (int32_t i = 0; i < count; i++) sum += x[i] * x[i];
@@ -35,16 +35,16 @@ static jali_status refine(jali_context *ctx, structure *s, const double *b, doub
 {
     jali_status status;
     int32_t count = unknowns_of(&s->k);
-    double whole = length_of(b, count);
+    double whole = length_of_unknowns(b, count);
     if (!(whole > 0)) return JALI_OK;
     TRY(solver_residual(ctx, s->solver, x, b, r));
-    double residual = length_of(r, count) / whole;
+    double residual = length_of_unknowns(r, count) / whole;
     if (residual > GOOD_RESIDUAL) {
         memcpy(y, r, (size_t)count * sizeof *y);
         TRY(solver_solve(ctx, s->solver, 1, y));
         for (int32_t i = 0; i < count; i++) y[i] += x[i];
         TRY(solver_residual(ctx, s->solver, y, b, r));
-        double refined = length_of(r, count) / whole;
+        double refined = length_of_unknowns(r, count) / whole;
         if (refined < residual) {
             memcpy(x, y, (size_t)count * sizeof *x);
             residual = refined;
